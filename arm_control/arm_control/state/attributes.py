@@ -5,6 +5,8 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from arm_control.state.class_names import attributes_by_present_name
+
 State = Any
 """A plain value; see `arm_control.state.encoding`."""
 
@@ -37,11 +39,11 @@ def save_attributes(owner: object, left_out: Collection[str] = ()) -> dict[str, 
 
 
 def load_attributes(owner: object, state: Mapping[str, State]) -> None:
-    """Set the attributes of an object.
+    """Set the attributes of an object, those that an earlier build saved included.
 
     An array of the same shape is changed in place, because others may hold a view of it.
     """
-    for name, value in state.items():
+    for name, value in attributes_by_present_name(type(owner), state).items():
         present = getattr(owner, name, None)
         if isinstance(present, Stateful):
             present.load_state(value)

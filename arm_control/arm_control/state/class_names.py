@@ -1,11 +1,13 @@
 """The names of classes in snapshots and recordings, those of earlier builds among them.
 
 A class is stored as 'module:Name'. When a class moves or gets another name, its old name goes into
-`EARLIER_NAMES`, so that the files of earlier builds stay readable.
+`EARLIER_NAMES`, and when an attribute gets another name, the old one into `EARLIER_ATTRIBUTES`, so
+that the files of earlier builds stay readable.
 """
 
 import importlib
 import sys
+from collections.abc import Mapping
 from typing import Any
 
 PACKAGES = ("arm_control", "arm_description", "arm_gazebo", "arm_node", "arm_sim")
@@ -18,8 +20,15 @@ _SENSORS = f"{_CONTROLLERS}.sensor_broadcasters"
 EARLIER_NAMES: dict[str, str] = {
     f"{_CONTROLLERS}.diff_drive.speed_limits": f"{_CONTROLLERS}.diff_drive.parameters",
     f"{_CONTROLLERS}.pid_controller.parameters": f"{_CONTROLLERS}.pid_controller.controller",
+    f"{_TRAJECTORY}.execution": f"{_TRAJECTORY}.goals",
+    f"{_TRAJECTORY}.execution:Execution": f"{_TRAJECTORY}.tracking:ActiveTrajectory",
     f"{_TRAJECTORY}.goals:TrajectoryRequest": f"{_TRAJECTORY}.trajectory:TrajectoryRequest",
     f"{_TRAJECTORY}.goals:WayPoints": f"{_TRAJECTORY}.trajectory:WayPoints",
+    f"{_TRAJECTORY}.plans": f"{_TRAJECTORY}.profiles",
+    f"{_TRAJECTORY}.plans:JoinedPlan": f"{_TRAJECTORY}.profiles:JoinedProfile",
+    f"{_TRAJECTORY}.plans:SplinePlan": f"{_TRAJECTORY}.profiles:SplineProfile",
+    f"{_TRAJECTORY}.plans:StepPlan": f"{_TRAJECTORY}.profiles:StepProfile",
+    f"{_TRAJECTORY}.plans:StopPlan": f"{_TRAJECTORY}.profiles:StopProfile",
     f"{_TRAJECTORY}.tolerances": f"{_TRAJECTORY}.goals",
     f"{_SENSORS}.force_torque": f"{_SENSORS}.controller",
     f"{_SENSORS}.imu": f"{_SENSORS}.controller",
@@ -30,6 +39,16 @@ EARLIER_NAMES: dict[str, str] = {
     "arm_gazebo.recording.recorded_run:RecordedRobot": "arm_gazebo.run.robot:ManagedRobot",
 }
 """The present names of modules and classes, the latter as 'module:Name', by their earlier ones."""
+
+EARLIER_ATTRIBUTES: dict[str, dict[str, str]] = {
+    f"{_TRAJECTORY}.tracking:ActiveTrajectory": {"plan": "profile"},
+    f"{_TRAJECTORY}.tracking:TrajectoryTracker": {
+        "_commander": "_writer",
+        "_execution": "_active",
+        "_goals": "_goal",
+    },
+}
+"""The present names of attributes by their earlier ones, for each class by its present name."""
 
 
 def class_name(cls: type) -> str:
@@ -53,3 +72,9 @@ def class_named(name: str) -> Any:
     for part in qualified.split("."):
         found = getattr(found, part, None)
     return found
+
+
+def attributes_by_present_name(cls: type, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the stored attributes of an object of this class under their present names."""
+    present = EARLIER_ATTRIBUTES.get(class_name(cls), {})
+    return {present.get(name, name): value for name, value in given.items()}

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from arm_control.errors import StateError
-from arm_control.state.class_names import class_name, class_named
+from arm_control.state.class_names import attributes_by_present_name, class_name, class_named
 
 LENGTH = struct.Struct("<I")
 FLOAT = struct.Struct("<d")
@@ -217,7 +217,7 @@ class _ByteReader:
         kind = self._class(_has_plain_attributes)
         value, title = object.__new__(kind), str(kind.__qualname__)
         known = set(_attributes_of(kind))
-        given = {self.read(): self.read() for _ in range(self._length())}
+        given = attributes_by_present_name(kind, self.dictionary())
         if not given.keys() <= known or (is_dataclass(kind) and given.keys() != known):
             raise StateError(
                 f"{title} has the attributes {', '.join(sorted(known))}, but the state "

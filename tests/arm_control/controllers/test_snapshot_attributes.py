@@ -10,8 +10,7 @@ import pytest
 
 from arm_control.controllers import controller as base
 from arm_control.controllers.controller import ChainableController, Controller
-from arm_control.controllers.joint_trajectory.controller import EXECUTOR_SETTINGS
-from arm_control.controllers.joint_trajectory.executor import TrajectoryExecutor
+from arm_control.controllers.joint_trajectory.tracking import TrajectoryTracker
 from arm_control.manager.registry import controller_class, controller_types
 
 BY_MANAGER = {"references", "exported_states"}
@@ -42,13 +41,13 @@ STATE = {
         "is_feedforward_enabled",
     },
     "PositionGripperController": GRIPPER,
-    "TrajectoryExecutor": {
+    "TrajectoryTracker": {
+        "_active",
         "_commanded",
-        "_commander",
-        "_execution",
-        "_goals",
+        "_goal",
         "_next",
         "_state",
+        "_writer",
         "time_s",
     },
 }
@@ -102,9 +101,10 @@ def test_every_attribute_is_state_or_declared_transient(name: str):
     assert left_out & STATE.get(name, set()) == set()
 
 
-def test_the_trajectory_controller_saves_its_executor():
-    assert undeclared(TrajectoryExecutor, set(EXECUTOR_SETTINGS)) == set()
-    assert STATE["TrajectoryExecutor"] & EXECUTOR_SETTINGS == set()
+def test_the_trajectory_controller_saves_its_tracker():
+    left_out = set(TrajectoryTracker.transient)
+    assert undeclared(TrajectoryTracker, left_out) == set()
+    assert STATE["TrajectoryTracker"] & left_out == set()
 
 
 def test_an_attribute_that_nobody_declared_is_named():

@@ -4,7 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from arm_control.state.class_names import EARLIER_NAMES, class_named
+from arm_control.state.class_names import (
+    EARLIER_ATTRIBUTES,
+    EARLIER_NAMES,
+    attributes_by_present_name,
+    class_name,
+    class_named,
+)
 
 SAVED = Path(__file__).with_name("saved_classes.txt").read_text(encoding="utf-8").split()
 """Every class that the build of November 2026 wrote into snapshots and recordings.
@@ -20,6 +26,16 @@ def test_a_class_of_an_earlier_build_is_found(name: str):
 
 def test_every_earlier_name_is_one_of_those():
     assert EARLIER_NAMES.keys() <= {*SAVED, *(name.partition(":")[0] for name in SAVED)}
+
+
+@pytest.mark.parametrize("name", EARLIER_ATTRIBUTES)
+def test_earlier_attributes_are_listed_by_the_present_name_of_their_class(name: str):
+    kind = class_named(name)
+    assert class_name(kind) == name
+    given = {earlier: number for number, earlier in enumerate(EARLIER_ATTRIBUTES[name])}
+    present = attributes_by_present_name(kind, {**given, "other": -1})
+    assert present.pop("other") == -1
+    assert present.keys().isdisjoint(given)
 
 
 def test_a_module_outside_of_the_suite_is_not_imported():

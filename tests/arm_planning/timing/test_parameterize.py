@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from arm_control.controllers.joint_trajectory.plans import Spline
+from arm_control.controllers.joint_trajectory.profiles import Spline
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing.parameterize import parameterize, scaling_factor

@@ -1,10 +1,10 @@
 """joint_trajectory_controller/JointTrajectoryController and its ROS half.
 
-Plans (`plans`) are functions of time made from waypoints (`trajectory`). An `Execution` advances
-one plan and compares the motion with the tolerances (`goals`). While the controller is active, the
-`executor` runs one execution after the other, and its `Commander` turns set-points into commands.
-Requests are checked (`validation`) on the client's thread and wait in an `Inbox` for the control
-loop.
+A client's `trajectory` becomes a motion profile (`profiles`): the set-point at each time from now
+on. While the controller is active, the `TrajectoryTracker` (`tracking`) follows one profile after
+the other, compares the motion with the goal's tolerances (`goals`), and turns set-points into
+`commands`. Requests are checked (`validation`) on the client's thread and wait in an `Inbox` for
+the control loop.
 
 For the ROS half, in the order of its work:
 

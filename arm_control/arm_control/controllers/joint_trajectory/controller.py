@@ -1,4 +1,4 @@
-"""joint_trajectory_controller/JointTrajectoryController: executes joint trajectories."""
+"""joint_trajectory_controller/JointTrajectoryController: what clients and the manager use."""
 
 from math import inf
 from typing import Any, ClassVar
@@ -11,45 +11,39 @@ from arm_control.controllers.controller import (
     ReturnType,
 )
 from arm_control.controllers.goals import GoalController
-from arm_control.controllers.joint_trajectory.execution import (
-    GoalCancel,
-    GoalStart,
-    Inbox,
-    SpeedScaling,
-    TrajectoryReplacement,
-)
-from arm_control.controllers.joint_trajectory.executor import TrajectoryExecutor
+from arm_control.controllers.joint_trajectory.commands import SpeedScaling
+from arm_control.controllers.joint_trajectory.configuration import Configuration
 from arm_control.controllers.joint_trajectory.goals import (
     RESET,
+    GoalCancel,
     GoalRefusal,
     GoalRequest,
     GoalResult,
+    GoalStart,
+    Inbox,
+    TrajectoryReplacement,
     deactivated,
     not_running,
 )
-from arm_control.controllers.joint_trajectory.parameters import (
-    Configuration,
-    JointTrajectoryParameters,
-)
-from arm_control.controllers.joint_trajectory.plans import POSITION
+from arm_control.controllers.joint_trajectory.parameters import JointTrajectoryParameters
+from arm_control.controllers.joint_trajectory.profiles import POSITION
 from arm_control.controllers.joint_trajectory.state import (
     MOTION_ROWS,
     QueriedState,
     StateLayout,
     TrajectorySink,
 )
-from arm_control.controllers.joint_trajectory.trajectory import Trajectory, TrajectoryRequest
+from arm_control.controllers.joint_trajectory.tracking import TrajectoryTracker
+from arm_control.controllers.joint_trajectory.trajectory import (
+    Interpolation,
+    Trajectory,
+    TrajectoryRequest,
+)
 from arm_control.controllers.joint_trajectory.validation import find_fault
 from arm_control.errors import ControllerError, ParameterError
 from arm_control.run_inputs import run_input
-from arm_control.state.attributes import load_attributes, save_attributes
 from arm_description.errors import DescriptionError
 from arm_description.urdf.robot import Robot
-
-EXECUTOR_SETTINGS = frozenset(
-    {"_configuration", "_states", "_speed_scaling", "_sink", "_logger", "_checked_rows"}
-)
-"""Attributes of an executor that are not part of its state."""
 
 
 class JointTrajectoryController(GoalController[JointTrajectoryParameters]):
@@ -78,7 +72,7 @@ class JointTrajectoryController(GoalController[JointTrajectoryParameters]):
         self._inbox = Inbox()
         self._configuration: Configuration | None = None
         self._speed_scaling: SpeedScaling | None = None
-        self._executor: TrajectoryExecutor | None = None
+        self._tracker: TrajectoryTracker | None = None
         # Caches the trajectory between the check and the submission of a goal.
         self._prepared: tuple[tuple[object, ...], Trajectory | None] = ((), None)
 
@@ -103,8 +97,8 @@ class JointTrajectoryController(GoalController[JointTrajectoryParameters]):
         prepared = self._prepare(goal.trajectory)
         if isinstance(prepared, GoalRefusal):
             return prepared.as_result()
-        executor = self._executor  # Read once: the loop thread may reset it.
-        violations = executor and executor.velocity_violations(prepared)
+        tracker = self._tracker  # Read once: the loop thread may reset it.
+        violations = tracker and tracker.velocity_violations(prepared)
         if violations:
             self.logger.warning("Goal too fast: %s", violations)
         self._prepared = ((), None)
@@ -188,22 +182,22 @@ class JointTrajectoryController(GoalController[JointTrajectoryParameters]):
             ParameterError: one is out of its range; the old ones stay.
         """
         self._configuration = Configuration.of(parameters, self._robot, self.logger)
-        if self._executor is not None:
-            self._executor.reconfigure(self._configuration)
+        if self._tracker is not None:
+            self._tracker.reconfigure(self._configuration)
 
     def on_activate(self) -> None:
         """Hold the position and start accepting requests."""
         configuration, scaling = self._configured()
-        self._executor = TrajectoryExecutor(
+        self._tracker = TrajectoryTracker(
             configuration, self.commands, self.states, scaling, self.sink, self.logger
         )
         self._inbox.open()
 
     def update(self, time_s: float, period_s: float) -> ReturnType:
         """Run one cycle."""
-        if self._executor is not None:
+        if self._tracker is not None:
             self._serve_requests()
-            self._executor.update(time_s, period_s)
+            self._tracker.update(time_s, period_s)
         return ReturnType.OK
 
     @run_input
@@ -212,50 +206,50 @@ class JointTrajectoryController(GoalController[JointTrajectoryParameters]):
         self._serve_requests()
 
     def _serve_requests(self) -> None:
-        if self._inbox and self._executor is not None:
-            self._executor.serve(self._inbox.take())
+        if self._inbox and self._tracker is not None:
+            self._tracker.serve(self._inbox.take())
 
     def save_state(self) -> Any:
         """Return the motion and its goal; pending requests are served first."""
         self._serve_requests()
-        executor, scaling = self._executor, self._speed_scaling
+        tracker, scaling = self._tracker, self._speed_scaling
         return (
             None if scaling is None else scaling.save_state(),
-            None if executor is None else save_attributes(executor, EXECUTOR_SETTINGS),
+            None if tracker is None else tracker.save_state(),
         )
 
     def load_state(self, state: Any) -> None:
         """Continue with a saved motion; a running goal that it lacks is aborted."""
         self._serve_requests()
-        scaling, executor = state
+        scaling, tracker = state
         if self._speed_scaling is not None and scaling is not None:
             self._speed_scaling.load_state(scaling)
-        if self._executor is not None and executor is not None:
-            load_attributes(self._executor, executor)
+        if self._tracker is not None and tracker is not None:
+            self._tracker.load_state(tracker)
 
     def fingerprint(self) -> bytes:
         """Return the numbers of the motion."""
-        return b"" if self._executor is None else self._executor.fingerprint()
+        return b"" if self._tracker is None else self._tracker.fingerprint()
 
     def on_reset(self) -> None:
         """Abort the goal and hold the present position."""
-        if self._executor is not None:
-            self._executor.abort(self._inbox.take(), RESET)
+        if self._tracker is not None:
+            self._tracker.abort(self._inbox.take(), RESET)
             self.on_activate()
 
     def query_state(self, time_s: float) -> QueriedState:
         """Return the set-point of the current trajectory at a time of the controller's clock."""
-        if self._executor is None:
+        if self._tracker is None:
             return QueriedState("the controller is not active", np.empty((MOTION_ROWS, 0)))
-        return self._executor.query(time_s)
+        return self._tracker.query(time_s)
 
     def on_deactivate(self) -> None:
         """Abort the goal; position commands stay, all others become 0."""
-        executor, self._executor = self._executor, None
+        tracker, self._tracker = self._tracker, None
         unserved = self._inbox.close()
-        if executor is not None:
-            executor.abort(unserved, deactivated(self.halted_by))
-            executor.write_safe_commands()
+        if tracker is not None:
+            tracker.abort(unserved, deactivated(self.halted_by))
+            tracker.write_safe_commands()
 
     def on_cleanup(self) -> None:
         """Forget the parameters."""
@@ -272,11 +266,12 @@ class JointTrajectoryController(GoalController[JointTrajectoryParameters]):
         Before the first update the time is unknown; then the checks of a stamp are left to that
         update.
         """
-        executor, configuration = self._executor, self._configuration
-        if executor is None or configuration is None:
+        tracker, configuration = self._tracker, self._configuration
+        if tracker is None or configuration is None:
             return not_running(self.halted_by)
-        now_s = executor.time_s
-        fault = find_fault(request, configuration.rules, -inf if now_s is None else now_s)
+        now_s = tracker.time_s
+        parameters = configuration.parameters
+        fault = find_fault(request, parameters, -inf if now_s is None else now_s)
         if fault is not None:
             return fault
         is_provisional = now_s is None and request.stamp_s != 0.0
@@ -285,12 +280,12 @@ class JointTrajectoryController(GoalController[JointTrajectoryParameters]):
         if trajectory is None or any(a is not b for a, b in zip(known, basis, strict=True)):
             trajectory = Trajectory(
                 request,
-                configuration.rules.joints,
-                configuration.interpolation,
+                parameters.joints,
+                Interpolation(parameters.interpolation_method),
                 is_provisional=is_provisional,
             )
             self._prepared = (basis, trajectory)
-        excess = None if trajectory.is_provisional else executor.limit_violations(trajectory)
+        excess = None if trajectory.is_provisional else tracker.limit_violations(trajectory)
         return excess or trajectory
 
 

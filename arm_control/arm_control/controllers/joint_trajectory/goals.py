@@ -1,4 +1,4 @@
-"""Goals: requests, not yet checked, their tolerances and their results."""
+"""Goals: their requests and results, the queue in which requests wait, and their tolerances."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -12,20 +12,20 @@ from arm_control.controllers.goals import (
     SIMULATION_RESET,
     SIMULATION_RESTORED,
     GoalOutcome,
+    RequestQueue,
     ended_at_deactivation,
     refused_while_inactive,
 )
-from arm_control.controllers.joint_trajectory.plans import (
+from arm_control.controllers.joint_trajectory.profiles import (
     ACCELERATION,
     POSITION,
     QUANTITIES,
     VELOCITY,
+    Array,
 )
-from arm_control.controllers.joint_trajectory.trajectory import TrajectoryRequest
+from arm_control.controllers.joint_trajectory.trajectory import Trajectory, TrajectoryRequest
 from arm_control.controllers.loaned_interfaces import describe_unmeasured
 from arm_control.errors import ArmControlError
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,13 +145,54 @@ def too_late(late_s: float) -> GoalResult:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class GoalStart:
+    """A request to start a goal."""
+
+    goal: GoalRequest
+    trajectory: Trajectory
+
+
+@dataclass(frozen=True, slots=True)
+class GoalCancel:
+    """A request to cancel a goal."""
+
+    goal_id: object
+
+
+@dataclass(frozen=True, slots=True)
+class TrajectoryReplacement:
+    """A request to start a trajectory without a goal."""
+
+    trajectory: Trajectory
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Come to rest."""
+
+
+Request = GoalStart | GoalCancel | TrajectoryReplacement
+Motion = GoalStart | TrajectoryReplacement | Stop
+"""What begins as soon as every position is known."""
+
+
+class Inbox(RequestQueue[Request]):
+    """The controller's request queue, in which a stream of trajectories does not pile up."""
+
+    def _append(self, request: Request) -> None:
+        # A trajectory replaces another one directly before it.
+        last = self._requests[-1] if self._requests else None
+        if isinstance(request, TrajectoryReplacement) and isinstance(last, TrajectoryReplacement):
+            self._requests.pop()
+        super()._append(request)
+
+
 CHECKED_ROWS = 3
 """Position, velocity and acceleration; there is no tolerance for efforts."""
 
 DISABLED = -1.0
 """In a goal: no tolerance, regardless of the controller's."""
-
-Array = NDArray[np.float64]
 
 
 class ToleranceError(ArmControlError):
@@ -167,7 +208,7 @@ class Bounds:
         is_any: whether there is any bound.
     """
 
-    values: NDArray[np.float64]
+    values: Array
     is_any: bool
 
     @classmethod
@@ -196,7 +237,7 @@ class Bounds:
 
 @dataclass(frozen=True, slots=True)
 class Tolerances:
-    """The tolerances that are checked while a trajectory is executed.
+    """The tolerances that are checked while a trajectory is followed.
 
     Attributes:
         path: bounds along the path.

@@ -25,7 +25,7 @@ from arm_control.controllers.joint_trajectory import (
     QueriedState,
     StateLayout,
 )
-from arm_control.controllers.joint_trajectory.plans import QUANTITIES
+from arm_control.controllers.joint_trajectory.profiles import QUANTITIES
 from arm_control.controllers.joint_trajectory.ros_serialized_goals import (
     TakenGoal,
     serializing_action_type,

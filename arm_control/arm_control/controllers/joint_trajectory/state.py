@@ -1,14 +1,20 @@
-"""The state that the controller reports in every cycle."""
+"""What the controller reports: its state in every cycle, a goal's feedback and its result."""
 
+import logging
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from arm_control.controllers.joint_trajectory.goals import GoalResult
-from arm_control.controllers.joint_trajectory.parameters import InterfaceLayout
-from arm_control.controllers.joint_trajectory.plans import EFFORT, QUANTITIES, ROWS
+from arm_control.controllers.joint_trajectory.configuration import InterfaceLayout
+from arm_control.controllers.joint_trajectory.goals import (
+    RESTORED,
+    GoalOutcome,
+    GoalRequest,
+    GoalResult,
+)
+from arm_control.controllers.joint_trajectory.profiles import EFFORT, QUANTITIES, ROWS, Array
+from arm_control.loop.schedule import Schedule
 
 MOTION_ROWS = 3
 """Position, velocity and acceleration are always in the reference."""
@@ -127,9 +133,9 @@ class Feedback:
 
     time_s: float
     progress: Progress
-    desired: NDArray[np.float64]
-    actual: NDArray[np.float64]
-    error: NDArray[np.float64]
+    desired: Array
+    actual: Array
+    error: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +149,7 @@ class QueriedState:
     """
 
     message: str
-    motion: NDArray[np.float64]
+    motion: Array
 
     @property
     def success(self) -> bool:
@@ -169,3 +175,73 @@ class TrajectorySink(Protocol):
     def finish_goal(self, goal_id: object, result: GoalResult) -> None:
         """End a goal; called once for each accepted goal, in the cycle in which it ends."""
         ...
+
+
+class ActiveGoal:
+    """Holds at most one goal, and sends feedback and the result. Loop thread only.
+
+    Attributes:
+        request: the goal, or None.
+    """
+
+    def __init__(
+        self, sink: TrajectorySink | None, feedback_rate_hz: float, logger: logging.Logger
+    ) -> None:
+        self.request: GoalRequest | None = None
+        self._sink = sink
+        self._feedback = Schedule(feedback_rate_hz)
+        self._logger = logger
+
+    def start(self, goal: GoalRequest) -> None:
+        """Set the goal; there must be no other."""
+        self.request = goal
+        self._feedback.restart()
+
+    def save_state(self) -> tuple[Any, ...]:
+        """Return the goal, and when its feedback is due."""
+        return self.request, self._feedback.save_state()
+
+    def load_state(self, state: tuple[Any, ...]) -> None:
+        """Continue with a saved goal; a different one that is running is aborted."""
+        goal, feedback = state
+        if self.request is not None and (goal is None or goal.id != self.request.id):
+            self.end(RESTORED)
+        self.request = goal
+        self._feedback.load_state(feedback)
+
+    def give_feedback(self, state: ControllerState) -> None:
+        """Publish the goal's feedback if it is due.
+
+        Intervals are in the controller's time and counted from the goal's start, so the rate does
+        not depend on the speed of the simulation.
+        """
+        if self.request is None or self._sink is None:
+            return
+        if not self._feedback.is_due(state.time_s):
+            return
+        self._sink.publish_feedback(
+            self.request.id,
+            Feedback(
+                state.time_s,
+                state.progress,
+                state.reference.copy(),
+                state.feedback.copy(),
+                state.error.copy(),
+            ),
+        )
+
+    def end(self, result: GoalResult, detail: str = "") -> None:
+        """End the goal, if there is one.
+
+        Args:
+            result: the result.
+            detail: an addition for the log.
+        """
+        if self.request is None:
+            return
+        goal, self.request = self.request, None
+        level = logging.WARNING if result.outcome is GoalOutcome.ABORTED else logging.INFO
+        message = result.message or f"Goal {result.outcome.value}"
+        self._logger.log(level, "%s", f"{message}: {detail}" if detail else message)
+        if self._sink is not None:
+            self._sink.finish_goal(goal.id, result)

@@ -10,20 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_control.controllers.angles import nearest_turn
-from arm_control.controllers.joint_trajectory.plans import (
+from arm_control.controllers.joint_trajectory.profiles import (
     ACCELERATION,
     POSITION,
     ROWS,
     VELOCITY,
-    JoinedPlan,
-    MotionPlan,
+    Array,
+    JoinedProfile,
+    MotionProfile,
     Spline,
-    SplinePlan,
-    StepPlan,
+    SplineProfile,
+    StepProfile,
 )
 from arm_control.state.encoding import StateValue
-
-Array = NDArray[np.float64]
 
 FIELDS = ("positions", "velocities", "accelerations", "effort")
 """The sequences of a waypoint, in the order of a motion's rows."""
@@ -205,18 +204,18 @@ class Trajectory(StateValue):
         """Return the time from `now_s` to its start; negative if it should have started."""
         return self.stamp_s - now_s if self.stamp_s else 0.0
 
-    def plan(
+    def profile(
         self,
         now_s: float,
-        start: NDArray[np.float64],
-        held_position: NDArray[np.float64],
+        start: Array,
+        held_position: Array,
         continuous: NDArray[np.bool_],
         join_s: float = 0.0,
-    ) -> MotionPlan:
-        """Return the motion plan from now on.
+    ) -> MotionProfile:
+        """Return the motion profile from now on.
 
         Args:
-            now_s: time 0 of the plan.
+            now_s: time 0 of the profile.
             start: motion to start from, shape (4, n).
             held_position: positions of the joints that the trajectory does not name, shape (n,).
             continuous: which joints are continuous, shape (n,): they take the shortest rotation to
@@ -233,18 +232,18 @@ class Trajectory(StateValue):
         moved = start.copy()
         moved[POSITION] = nearest_turn(start[POSITION], motions[0, POSITION], continuous)
         if self._interpolation is Interpolation.NONE:
-            return StepPlan(moved, motions, self.times_s + offset_s)
+            return StepProfile(moved, motions, self.times_s + offset_s)
         if spline is None:
             spline = Spline(self.times_s, motions)
         if join_s > 0.0:
-            return JoinedPlan(start, spline, first_s, offset_s, join_s, continuous)
-        return SplinePlan(moved, motions[0], spline, first_s, offset_s)
+            return JoinedProfile(start, spline, first_s, offset_s, join_s, continuous)
+        return SplineProfile(moved, motions[0], spline, first_s, offset_s)
 
     def _has_open_positions(self) -> bool:
         return bool(np.isnan(self.motions[:, POSITION]).any())
 
 
-def _hold_joints(motions: Array, held: NDArray[np.bool_], position: Array) -> NDArray[np.float64]:
+def _hold_joints(motions: Array, held: NDArray[np.bool_], position: Array) -> Array:
     """Return waypoints in which some joints are held.
 
     Args:
@@ -261,7 +260,7 @@ def _hold_joints(motions: Array, held: NDArray[np.bool_], position: Array) -> ND
     return motions
 
 
-def integrate(times_s: Array, motions: Array, start: Array) -> NDArray[np.float64]:
+def integrate(times_s: Array, motions: Array, start: Array) -> Array:
     """Return waypoints with missing positions integrated.
 
     A missing position is integrated from the velocities at this point and the previous one, by the
@@ -293,9 +292,7 @@ def _and_before(rows: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return wider
 
 
-def _accumulate(
-    values: Array, rates: Array, halves: Array, is_open: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def _accumulate(values: Array, rates: Array, halves: Array, is_open: NDArray[np.bool_]) -> Array:
     """Return values, shape (m + 1, n); each open one is the previous one plus its trapezoid."""
     steps = np.where(is_open[1:], (rates[:-1] + rates[1:]) * halves, 0.0)
     total = np.concatenate([np.zeros_like(values[:1]), np.cumsum(steps, axis=0)])

@@ -1,28 +1,30 @@
 """Rejects trajectories that the controller cannot follow or that break joint limits."""
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from arm_control.controllers.angles import nearest_turn
+from arm_control.controllers.joint_trajectory.configuration import Configuration, JointModel
 from arm_control.controllers.joint_trajectory.goals import ErrorCode, GoalRefusal
-from arm_control.controllers.joint_trajectory.plans import (
+from arm_control.controllers.joint_trajectory.parameters import (
+    JointTrajectoryParameters as Parameters,
+)
+from arm_control.controllers.joint_trajectory.profiles import (
     EFFORT,
     LARGEST,
     POSITION,
     RESOLUTION_S,
     VELOCITY,
-    MotionPlan,
+    Array,
+    MotionProfile,
 )
 from arm_control.controllers.joint_trajectory.trajectory import (
     FIELDS,
     Trajectory,
     TrajectoryRequest,
 )
-from arm_description.urdf.robot import Robot
 
 SAMPLES_PER_SEGMENT = 8
 """Enough to see a polynomial of degree five overshoot between its ends."""
@@ -30,176 +32,27 @@ SAMPLES_PER_SEGMENT = 8
 SLACK = 1e-6
 """Tolerance of the limit checks: planners go exactly to the limit."""
 
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class JointModel:
-    """A controller's joints in the robot description, in the controller's order.
-
-    Attributes:
-        joints: their names.
-        continuous: which joints are continuous, shape (n,).
-        turns: whether any of them is.
-        units: units of their positions, rad or m.
-        lower: lower position limits, shape (n,); -inf for no limit.
-        upper: upper position limits, shape (n,); inf for no limit.
-        velocity: velocity limits, shape (n,); inf for no limit.
-    """
-
-    joints: tuple[str, ...]
-    continuous: NDArray[np.bool_]
-    turns: bool
-    units: tuple[str, ...]
-    lower: NDArray[np.float64]
-    upper: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-
-    @classmethod
-    def of(cls, robot: Robot | None, names: Sequence[str]) -> "JointModel":
-        """Look up joints; one that the robot does not have gets no limits."""
-        known = {joint.name: joint for joint in robot.joints} if robot else {}
-        joints = [known.get(name) for name in names]
-        limits = [joint.limit if joint else None for joint in joints]
-        continuous = [joint is not None and joint.type.wraps for joint in joints]
-        return cls(
-            tuple(names),
-            np.array(continuous),
-            any(continuous),
-            tuple(joint.type.unit if joint else "rad" for joint in joints),
-            np.array([limit.lower if limit else -np.inf for limit in limits]),
-            np.array([limit.upper if limit else np.inf for limit in limits]),
-            np.array([limit.velocity if limit and limit.velocity else np.inf for limit in limits]),
-        )
-
-    def velocity_violations(
-        self, trajectory: Trajectory, start: NDArray[np.float64], offset_s: float
-    ) -> str | None:
-        """Return which joint a trajectory drives beyond its velocity limit, or None.
-
-        A quick check for trajectories that are executed anyway: it considers the velocity at each
-        point and the mean velocity from the previous one. A plan may be faster in between.
-
-        Args:
-            trajectory: the requested trajectory.
-            start: positions from which it starts, shape (n,).
-            offset_s: time from now to its start.
-        """
-        due_s = trajectory.times_s + offset_s
-        coming = due_s > RESOLUTION_S
-        points = trajectory.motions[coming]
-        if not len(points):
-            return None
-        start = nearest_turn(start, points[0, POSITION], self.continuous)
-        distances = np.abs(np.diff(np.vstack([start, points[:, POSITION]]), axis=0))
-        paces = distances / np.diff(due_s[coming], prepend=0.0)[:, None]
-        # Missing values are NaN: fmax ignores them, and a comparison with NaN is false.
-        speeds = np.fmax(paces, np.abs(points[:, VELOCITY]))
-        excess = np.where(speeds > self.velocity + SLACK, speeds / self.velocity, 0.0)
-        row, i = np.unravel_index(np.argmax(excess), excess.shape)
-        if not excess[row, i]:
-            return None
-        number, unit = np.flatnonzero(coming)[row] + 1, self.units[i]
-        return (
-            f"joint {self.joints[i]} would have to move at {speeds[row, i]:.4g} {unit}/s to reach "
-            f"point {number} of {len(due_s)} in time; its velocity limit is "
-            f"{self.velocity[i]:.4g} {unit}/s"
-        )
-
-
-@dataclass(frozen=True, slots=True)
-class LimitCheck:
-    """The limits that a trajectory must keep."""
-
-    model: JointModel
-    positions: bool
-    velocities: bool
-
-    def limit_violations(
-        self, plan: MotionPlan, times_s: Array, present: Array
-    ) -> GoalRefusal | None:
-        """Return which limit a plan violates, or None.
-
-        The motion between waypoints is checked at a few samples. A joint that is already beyond a
-        limit may stay there or move back, but not further.
-
-        Args:
-            plan: the plan.
-            times_s: times of its waypoints, shape (m,).
-            present: measured and commanded positions, shape (k, n); NaN if unknown.
-        """
-        knots_s = np.concatenate([[0.0], times_s[times_s > 0.0]])
-        fractions = np.arange(SAMPLES_PER_SEGMENT) / SAMPLES_PER_SEGMENT
-        between_s = knots_s[:-1, None] + np.diff(knots_s)[:, None] * fractions
-        sampled_s = np.append(between_s, knots_s[-1])
-        motions = np.stack([plan.sample(time_s) for time_s in sampled_s.tolist()])
-        model = self.model
-        if self.positions:
-            position = motions[:, POSITION]
-            lower = np.fmin.reduce(np.vstack([model.lower, present]))
-            upper = np.fmax.reduce(np.vstack([model.upper, present]))
-            outside = (position < lower - SLACK) | (position > upper + SLACK)
-            for row, i in np.argwhere(outside):
-                return _refusal(
-                    f"The trajectory takes joint {model.joints[i]} to {position[row, i]:f}, "
-                    f"outside its limits [{model.lower[i]:f}, {model.upper[i]:f}]",
-                    float(sampled_s[row]),
-                )
-        if self.velocities:
-            speed = np.abs(motions[:, VELOCITY])
-            for row, i in np.argwhere(speed > model.velocity + SLACK):
-                return _refusal(
-                    f"The trajectory moves joint {model.joints[i]} at {speed[row, i]:f}, "
-                    f"above its velocity limit of {model.velocity[i]:f}",
-                    float(sampled_s[row]),
-                )
-        return None
-
-
-def _refusal(fault: str, time_s: float) -> GoalRefusal:
-    return GoalRefusal(ErrorCode.INVALID_GOAL, f"{fault}, {time_s:.3f} s after its start.")
-
-
 STANDSTILL = float(np.finfo(np.float32).eps)
 """Velocities up to this count as 0."""
 
 
-@dataclass(frozen=True, slots=True)
-class TrajectoryRules:
-    """The trajectories that a controller accepts.
-
-    Attributes:
-        joints: its joints.
-        allow_partial: whether a trajectory may omit joints.
-        allow_integration: whether points may omit positions, which are then integrated.
-        allow_moving_end: whether the last point may have a velocity.
-        takes_effort: whether points may have efforts.
-    """
-
-    joints: tuple[str, ...]
-    allow_partial: bool = False
-    allow_integration: bool = False
-    allow_moving_end: bool = False
-    takes_effort: bool = False
-
-
 def find_fault(
-    request: TrajectoryRequest, rules: TrajectoryRules, now_s: float = -math.inf
+    request: TrajectoryRequest, parameters: Parameters, now_s: float = -math.inf
 ) -> GoalRefusal | None:
     """Return the first fault of a trajectory, or None.
 
     Args:
         request: the trajectory.
-        rules: the controller's rules.
+        parameters: the controller's parameters.
         now_s: the controller's time, for trajectories with a stamp; -inf if unknown.
     """
     for code, faults in (
-        (ErrorCode.INVALID_JOINTS, _count_faults(request, rules)),
+        (ErrorCode.INVALID_JOINTS, _count_faults(request, parameters)),
         (ErrorCode.INVALID_GOAL, _emptiness_faults(request)),
-        (ErrorCode.INVALID_JOINTS, _name_faults(request, rules)),
-        (ErrorCode.INVALID_GOAL, _end_faults(request, rules, now_s)),
+        (ErrorCode.INVALID_JOINTS, _name_faults(request, parameters)),
+        (ErrorCode.INVALID_GOAL, _end_faults(request, parameters, now_s)),
         (ErrorCode.INVALID_GOAL, _time_faults(request)),
-        (ErrorCode.INVALID_GOAL, _size_faults(request, rules)),
+        (ErrorCode.INVALID_GOAL, _size_faults(request, parameters)),
         (ErrorCode.INVALID_GOAL, _number_faults(request)),
     ):
         message = next(faults, None)
@@ -219,8 +72,9 @@ def describe_lateness(stamp_s: float, duration_s: float, now_s: float) -> str:
     )
 
 
-def _count_faults(request: TrajectoryRequest, rules: TrajectoryRules) -> Iterator[str]:
-    if not rules.allow_partial and len(request.joint_names) != len(rules.joints):
+def _count_faults(request: TrajectoryRequest, parameters: Parameters) -> Iterator[str]:
+    is_partial = len(request.joint_names) != len(parameters.joints)
+    if is_partial and not parameters.allow_partial_joints_goal:
         yield "Joints on incoming trajectory don't match the controller joints."
     if not request.joint_names:
         yield "Empty joint names on incoming trajectory."
@@ -231,19 +85,19 @@ def _emptiness_faults(request: TrajectoryRequest) -> Iterator[str]:
         yield "Empty trajectory received."
 
 
-def _name_faults(request: TrajectoryRequest, rules: TrajectoryRules) -> Iterator[str]:
+def _name_faults(request: TrajectoryRequest, parameters: Parameters) -> Iterator[str]:
     seen: set[str] = set()
     for name in request.joint_names:
-        if name not in rules.joints:
+        if name not in parameters.joints:
             yield f"Incoming joint {name} doesn't match the controller's joints."
         if name in seen:
             yield f"Incoming joint {name} is named more than once."
         seen.add(name)
 
 
-def _end_faults(request: TrajectoryRequest, rules: TrajectoryRules, now_s: float) -> Iterator[str]:
+def _end_faults(request: TrajectoryRequest, parameters: Parameters, now_s: float) -> Iterator[str]:
     last = request.points[-1]
-    if not rules.allow_moving_end:
+    if not parameters.allow_nonzero_velocity_at_trajectory_end:
         for name, velocity in zip(request.joint_names, last.velocities, strict=False):
             if abs(velocity) > STANDSTILL:
                 yield (
@@ -271,13 +125,15 @@ def _time_faults(request: TrajectoryRequest) -> Iterator[str]:
         )
 
 
-def _size_faults(request: TrajectoryRequest, rules: TrajectoryRules) -> Iterator[str]:
+def _size_faults(request: TrajectoryRequest, parameters: Parameters) -> Iterator[str]:
     joints = len(request.joint_names)
+    takes_effort = "effort" in parameters.command_interfaces
     every = request.way_points.sizes
-    mandatory = [field == "positions" and not rules.allow_integration for field in FIELDS]
+    integrates = parameters.allow_integration_in_goal_trajectories
+    mandatory = [field == "positions" and not integrates for field in FIELDS]
     faulty = ((every != joints) & ((every > 0) | mandatory)).any(axis=1)
     faulty |= ~every[:, :EFFORT].any(axis=1)
-    faulty |= (every[:, EFFORT] > 0) & (not rules.takes_effort)
+    faulty |= (every[:, EFFORT] > 0) & (not takes_effort)
     for i in np.flatnonzero(faulty):
         sizes = every[i].tolist()
         for field, size, is_mandatory in zip(FIELDS, sizes, mandatory, strict=True):
@@ -288,7 +144,7 @@ def _size_faults(request: TrajectoryRequest, rules: TrajectoryRules) -> Iterator
                 )
         if not any(sizes[:EFFORT]):
             yield "The given trajectory has no position, velocity, or acceleration points."
-        if sizes[EFFORT] and not rules.takes_effort:
+        if sizes[EFFORT] and not takes_effort:
             yield (
                 "Trajectories with effort fields are only supported for controllers using the "
                 "'effort' command interface."
@@ -305,3 +161,85 @@ def _number_faults(request: TrajectoryRequest) -> Iterator[str]:
                 f"The {field} of joint {request.joint_names[column]} at point #{given[row]} "
                 f"are {fault}: {number}."
             )
+
+
+def velocity_violations(
+    trajectory: Trajectory, model: JointModel, start: Array, offset_s: float
+) -> str | None:
+    """Return which joint a trajectory drives beyond its velocity limit, or None.
+
+    A quick check for trajectories that are executed anyway: it considers the velocity at each
+    point and the mean velocity from the previous one. A profile may be faster in between.
+
+    Args:
+        trajectory: the requested trajectory.
+        model: the joints.
+        start: positions from which it starts, shape (n,).
+        offset_s: time from now to its start.
+    """
+    due_s = trajectory.times_s + offset_s
+    coming = due_s > RESOLUTION_S
+    points = trajectory.motions[coming]
+    if not len(points):
+        return None
+    start = nearest_turn(start, points[0, POSITION], model.continuous)
+    distances = np.abs(np.diff(np.vstack([start, points[:, POSITION]]), axis=0))
+    paces = distances / np.diff(due_s[coming], prepend=0.0)[:, None]
+    # Missing values are NaN: fmax ignores them, and a comparison with NaN is false.
+    speeds = np.fmax(paces, np.abs(points[:, VELOCITY]))
+    excess = np.where(speeds > model.velocity + SLACK, speeds / model.velocity, 0.0)
+    row, i = np.unravel_index(np.argmax(excess), excess.shape)
+    if not excess[row, i]:
+        return None
+    number, unit = np.flatnonzero(coming)[row] + 1, model.units[i]
+    return (
+        f"joint {model.joints[i]} would have to move at {speeds[row, i]:.4g} {unit}/s to reach "
+        f"point {number} of {len(due_s)} in time; its velocity limit is "
+        f"{model.velocity[i]:.4g} {unit}/s"
+    )
+
+
+def limit_violations(
+    profile: MotionProfile, times_s: Array, present: Array, configuration: Configuration
+) -> GoalRefusal | None:
+    """Return which of the checked limits a profile violates, or None.
+
+    The motion between waypoints is checked at a few samples. A joint that is already beyond a
+    limit may stay there or move back, but not further.
+
+    Args:
+        profile: the profile.
+        times_s: times of its waypoints, shape (m,).
+        present: measured and commanded positions, shape (k, n); NaN if unknown.
+        configuration: which limits are checked, and the limits.
+    """
+    knots_s = np.concatenate([[0.0], times_s[times_s > 0.0]])
+    fractions = np.arange(SAMPLES_PER_SEGMENT) / SAMPLES_PER_SEGMENT
+    between_s = knots_s[:-1, None] + np.diff(knots_s)[:, None] * fractions
+    sampled_s = np.append(between_s, knots_s[-1])
+    motions = np.stack([profile.sample(time_s) for time_s in sampled_s.tolist()])
+    model, parameters = configuration.model, configuration.parameters
+    if parameters.check_position_limits:
+        position = motions[:, POSITION]
+        lower = np.fmin.reduce(np.vstack([model.lower, present]))
+        upper = np.fmax.reduce(np.vstack([model.upper, present]))
+        outside = (position < lower - SLACK) | (position > upper + SLACK)
+        for row, i in np.argwhere(outside):
+            return _refusal(
+                f"The trajectory takes joint {model.joints[i]} to {position[row, i]:f}, "
+                f"outside its limits [{model.lower[i]:f}, {model.upper[i]:f}]",
+                float(sampled_s[row]),
+            )
+    if parameters.check_velocity_limits:
+        speed = np.abs(motions[:, VELOCITY])
+        for row, i in np.argwhere(speed > model.velocity + SLACK):
+            return _refusal(
+                f"The trajectory moves joint {model.joints[i]} at {speed[row, i]:f}, "
+                f"above its velocity limit of {model.velocity[i]:f}",
+                float(sampled_s[row]),
+            )
+    return None
+
+
+def _refusal(fault: str, time_s: float) -> GoalRefusal:
+    return GoalRefusal(ErrorCode.INVALID_GOAL, f"{fault}, {time_s:.3f} s after its start.")

@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from arm_control.controllers.joint_trajectory import GoalRequest
-from arm_control.controllers.joint_trajectory.execution import (
+from arm_control.controllers.joint_trajectory.goals import (
     GoalCancel,
     Inbox,
     TrajectoryReplacement,
+    not_running,
 )
-from arm_control.controllers.joint_trajectory.goals import not_running
 from arm_control.controllers.joint_trajectory.trajectory import Trajectory
 
 POINT = [(0.5, [1.0, 2.0, 3.0])]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from arm_control.controllers.joint_trajectory.plans import Spline
+from arm_control.controllers.joint_trajectory.profiles import Spline
 
 NAN = np.nan
 

@@ -9,13 +9,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from arm_control.controllers.angles import nearest_turn, shortest_angular_distance
-from arm_control.controllers.joint_trajectory.plans import (
+from arm_control.controllers.joint_trajectory.profiles import (
     LARGEST,
     RESOLUTION_S,
-    JoinedPlan,
+    JoinedProfile,
     Spline,
-    SplinePlan,
-    StopPlan,
+    SplineProfile,
+    StopProfile,
 )
 from arm_control.controllers.joint_trajectory.trajectory import integrate
 
@@ -49,11 +49,11 @@ def way_points(draw: Callable, degree: int | None = None) -> tuple[np.ndarray, n
 
 
 @st.composite
-def plans(draw: Callable, degree: int | None = None) -> SplinePlan:
-    """A plan from a start of any knowledge, perhaps begun in the past or for the future."""
+def profiles(draw: Callable, degree: int | None = None) -> SplineProfile:
+    """A profile from a start of any knowledge, perhaps begun in the past or for the future."""
     times, points = draw(way_points(degree))
     offset = draw(st.floats(-times[-1], 5.0))
-    return SplinePlan(
+    return SplineProfile(
         draw(motions()), points[0], Spline(times, points), float(times[0]), offset_s=offset
     )
 
@@ -88,27 +88,27 @@ def test_continuity_at_waypoints(degree: int, continuous_rows: int):
 
 
 @unhurried
-@given(plans())
-def test_the_end_lasts(plan: SplinePlan):
-    end = plan.sample(max(plan.end_s, 0.0))
+@given(profiles())
+def test_the_end_lasts(profile: SplineProfile):
+    end = profile.sample(max(profile.end_s, 0.0))
 
-    assert plan.sample(max(plan.end_s, 0.0) + 7.0).tolist() == end.tolist()
+    assert profile.sample(max(profile.end_s, 0.0) + 7.0).tolist() == end.tolist()
 
 
 @unhurried
-@given(plans(), st.lists(st.floats(0.0, 30.0), min_size=1, max_size=8))
-def test_a_sample_does_not_depend_on_the_samples_before(plan: SplinePlan, times: list[float]):
+@given(profiles(), st.lists(st.floats(0.0, 30.0), min_size=1, max_size=8))
+def test_a_sample_does_not_depend_on_the_samples_before(profile: SplineProfile, times: list[float]):
     """Upstream keeps a cursor in the trajectory; here a sample is a function of time alone."""
-    alone = [plan.sample(time_s).tolist() for time_s in times]
-    backwards = [plan.sample(time_s).tolist() for time_s in reversed(times)]
+    alone = [profile.sample(time_s).tolist() for time_s in times]
+    backwards = [profile.sample(time_s).tolist() for time_s in reversed(times)]
 
     assert alone == backwards[::-1]
 
 
 @unhurried
-@given(plans(), st.floats(0.0, 30.0))
-def test_nothing_is_left_open(plan: SplinePlan, time_s: float):
-    assert np.isfinite(plan.sample(time_s)).all()
+@given(profiles(), st.floats(0.0, 30.0))
+def test_nothing_is_left_open(profile: SplineProfile, time_s: float):
+    assert np.isfinite(profile.sample(time_s)).all()
 
 
 @unhurried
@@ -126,9 +126,11 @@ def test_no_number_that_is_taken_overflows(
     motions_there[:, :3] = np.reshape(points, (-1, 3, JOINTS))
     times = np.array([gap_s * (1 + i) for i in range(len(points))])
     first = float(times[0])
-    plan = SplinePlan(-motions_there[0], motions_there[0], Spline(times, motions_there), first, 0.0)
+    profile = SplineProfile(
+        -motions_there[0], motions_there[0], Spline(times, motions_there), first, 0.0
+    )
 
-    assert np.isfinite(plan.sample(fraction * float(times[-1]))).all()
+    assert np.isfinite(profile.sample(fraction * float(times[-1]))).all()
 
 
 @unhurried
@@ -189,12 +191,12 @@ def test_a_join_starts_as_commanded_and_ends_as_planned(
     times, motions_there = points
     commanded = np.nan_to_num(commanded)
     spline, first_s = Spline(times, motions_there), float(times[0])
-    plan = JoinedPlan(commanded, spline, first_s, offset_s, least_s, NOT_CONTINUOUS)
+    profile = JoinedProfile(commanded, spline, first_s, offset_s, least_s, NOT_CONTINUOUS)
 
-    assert np.allclose(plan.sample(0.0)[:3], commanded[:3], atol=1e-9)
-    for time_s in (plan.end_s, plan.end_s + 1.0):
+    assert np.allclose(profile.sample(0.0)[:3], commanded[:3], atol=1e-9)
+    for time_s in (profile.end_s, profile.end_s + 1.0):
         if time_s >= 0.0:
-            assert plan.sample(time_s).tolist() == spline.sample(time_s - offset_s).tolist()
+            assert profile.sample(time_s).tolist() == spline.sample(time_s - offset_s).tolist()
 
 
 @unhurried
@@ -207,8 +209,8 @@ def test_a_join_starts_as_commanded_and_ends_as_planned(
 def test_a_stop_never_turns_back(
     position: list[float], velocity: list[float], deceleration: list[float], time_s: float
 ):
-    plan = StopPlan(np.array(position), np.array(velocity), np.array(deceleration))
-    motion = plan.sample(time_s)
+    profile = StopProfile(np.array(position), np.array(velocity), np.array(deceleration))
+    motion = profile.sample(time_s)
     distance = np.array(velocity) ** 2 / (2.0 * np.array(deceleration))
 
     assert (motion[1] * np.array(velocity) >= -1e-12).all()

@@ -7,21 +7,24 @@ from typing import Any
 import numpy as np
 import pytest
 
+from arm_control.controllers.joint_trajectory import JointTrajectoryParameters
 from arm_control.controllers.joint_trajectory.goals import ErrorCode
 from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
-from arm_control.controllers.joint_trajectory.validation import TrajectoryRules, find_fault
+from arm_control.controllers.joint_trajectory.validation import find_fault
 
 JOINTS = ("j0", "j1", "j2")
-RULES = TrajectoryRules(joints=JOINTS)
-PARTIAL = replace(RULES, allow_partial=True)
-INTEGRATING = replace(RULES, allow_integration=True)
+PARAMETERS = JointTrajectoryParameters(joints=JOINTS)
+PARTIAL = replace(PARAMETERS, allow_partial_joints_goal=True)
+INTEGRATING = replace(PARAMETERS, allow_integration_in_goal_trajectories=True)
 GOOD_POINT = TrajectoryPoint(0.25, [1.0, 2.0, 3.0], [-1.0, -2.0, -3.0])
 END = TrajectoryPoint(0.5, [1.0, 2.0, 3.0], [0.0, 0.0, 0.0])
 GOOD = TrajectoryRequest(JOINTS, [GOOD_POINT, END])
 
 
-def message(request: TrajectoryRequest, rules: TrajectoryRules = RULES, **options: Any) -> str:
-    fault = find_fault(request, rules, **options)
+def message(
+    request: TrajectoryRequest, parameters: JointTrajectoryParameters = PARAMETERS, **options: Any
+) -> str:
+    fault = find_fault(request, parameters, **options)
     return fault.message if fault else ""
 
 
@@ -30,14 +33,14 @@ def with_first(**fields: Any) -> TrajectoryRequest:
 
 
 def test_a_good_trajectory_has_no_fault():
-    assert find_fault(GOOD, RULES) is None
+    assert find_fault(GOOD, PARAMETERS) is None
 
 
 class TestInvalidMessage:
     """Upstream's invalid_message and similar tests."""
 
     def test_a_subset_of_the_joints(self):
-        fault = find_fault(replace(GOOD, joint_names=["j0"]), RULES)
+        fault = find_fault(replace(GOOD, joint_names=["j0"]), PARAMETERS)
 
         assert fault is not None
         assert fault.message == "Joints on incoming trajectory don't match the controller joints."
@@ -49,14 +52,14 @@ class TestInvalidMessage:
         )
 
     def test_no_points(self):
-        fault = find_fault(replace(GOOD, points=[]), RULES)
+        fault = find_fault(replace(GOOD, points=[]), PARAMETERS)
 
         assert fault is not None
         assert fault.message == "Empty trajectory received."
         assert fault.code is ErrorCode.INVALID_GOAL
 
     def test_an_unknown_joint(self):
-        fault = find_fault(replace(GOOD, joint_names=["j0", "j9", "j2"]), RULES)
+        fault = find_fault(replace(GOOD, joint_names=["j0", "j9", "j2"]), PARAMETERS)
 
         assert fault is not None
         assert fault.message == "Incoming joint j9 doesn't match the controller's joints."
@@ -76,7 +79,7 @@ class TestInvalidMessage:
         )
 
     def test_efforts_of_another_size(self):
-        taking_efforts = replace(RULES, takes_effort=True)
+        taking_efforts = replace(PARAMETERS, command_interfaces=("effort",))
 
         assert message(with_first(effort=[1.0]), taking_efforts) == (
             "Mismatch between joint_names size (3) and effort (1) at point #0."
@@ -103,7 +106,7 @@ class TestInvalidMessage:
 
 
 def test_the_first_point_may_be_due_at_once():
-    assert find_fault(with_first(time_from_start_s=0.0), RULES) is None
+    assert find_fault(with_first(time_from_start_s=0.0), PARAMETERS) is None
 
 
 def test_a_subset_is_taken_where_that_is_allowed():
@@ -132,12 +135,17 @@ class TestVelocityAtTheEnd:
         )
 
     def test_is_taken_where_that_is_allowed(self):
-        assert find_fault(self.moving, replace(RULES, allow_moving_end=True)) is None
+        assert (
+            find_fault(
+                self.moving, replace(PARAMETERS, allow_nonzero_velocity_at_trajectory_end=True)
+            )
+            is None
+        )
 
     def test_may_be_a_rounding_error(self):
         still = TrajectoryRequest(JOINTS, [TrajectoryPoint(0.25, [1.0] * 3, [1e-8] * 3)])
 
-        assert find_fault(still, RULES) is None
+        assert find_fault(still, PARAMETERS) is None
 
 
 class TestStamp:
@@ -148,17 +156,17 @@ class TestStamp:
         )
 
     def test_one_that_began_in_the_past_is_taken(self):
-        assert find_fault(replace(GOOD, stamp_s=9.8), RULES, now_s=10.0) is None
+        assert find_fault(replace(GOOD, stamp_s=9.8), PARAMETERS, now_s=10.0) is None
 
     def test_no_stamp_means_now(self):
-        assert find_fault(GOOD, RULES, now_s=10.0) is None
+        assert find_fault(GOOD, PARAMETERS, now_s=10.0) is None
 
 
 class TestBeyondUpstream:
     @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
     @pytest.mark.parametrize("field", ["positions", "velocities", "accelerations"])
     def test_numbers_that_are_not_finite_are_refused(self, field: str, value: float):
-        fault = find_fault(with_first(**{field: [0.0, value, 0.0]}), RULES)
+        fault = find_fault(with_first(**{field: [0.0, value, 0.0]}), PARAMETERS)
 
         assert fault is not None
         assert fault.message == (
@@ -173,7 +181,7 @@ class TestBeyondUpstream:
         )
 
     def test_efforts_that_are_not_finite_are_refused(self):
-        taking_efforts = replace(RULES, takes_effort=True)
+        taking_efforts = replace(PARAMETERS, command_interfaces=("effort",))
 
         assert "effort" in message(with_first(effort=[0.0, 0.0, np.nan]), taking_efforts)
 
@@ -183,7 +191,7 @@ class TestBeyondUpstream:
         assert "not finite" in message(replace(GOOD, points=[GOOD_POINT, end]))
 
     def test_a_joint_named_twice_is_refused(self):
-        fault = find_fault(replace(GOOD, joint_names=["j0", "j1", "j0"]), RULES)
+        fault = find_fault(replace(GOOD, joint_names=["j0", "j1", "j0"]), PARAMETERS)
 
         assert fault is not None
         assert fault.message == "Incoming joint j0 is named more than once."

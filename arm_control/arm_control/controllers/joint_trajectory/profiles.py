@@ -1,4 +1,4 @@
-"""Motions of several joints, and plans: the motion at each time from now on.
+"""Motions of several joints, and profiles: the motion at each time from now on.
 
 A motion is the position, velocity, acceleration and effort of each joint, shape (4, n).
 """
@@ -35,14 +35,14 @@ make other threads wait for the interpreter."""
 Array = NDArray[np.float64]
 
 
-def at_rest(position: NDArray[np.float64]) -> NDArray[np.float64]:
+def at_rest(position: Array) -> Array:
     """Return the motion of joints at rest at `position`, shape (n,), without effort."""
     motion = np.zeros((ROWS, len(position)))
     motion[POSITION] = position
     return motion
 
 
-def completed(motion: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+def completed(motion: Array, other: Array) -> Array:
     """Return a motion whose unknown positions come from another one."""
     known = np.isfinite(motion[POSITION])
     if known.all():
@@ -87,7 +87,7 @@ class Spline(StateValue):
                 )
             )
 
-    def sample(self, time_s: float) -> NDArray[np.float64]:
+    def sample(self, time_s: float) -> Array:
         """Return the motion at a time not before the first point, shape (4, n); a new array."""
         # Bisection finds the segment in a fraction of a microsecond, however long the trajectory,
         # and needs no state between samples.
@@ -102,7 +102,7 @@ class Spline(StateValue):
         return (powers @ self._coefficients[segment]).reshape(ROWS, -1)
 
 
-def segment_polynomials(start: Array, end: Array, duration_s: Array) -> NDArray[np.float64]:
+def segment_polynomials(start: Array, end: Array, duration_s: Array) -> Array:
     """Return polynomials in the time since `start` that lead from `start` to `end`.
 
     The base is linear through both positions. If the velocities at both ends are known, their
@@ -147,7 +147,7 @@ def _where_both(a: Array, b: Array, allowed: Any = True) -> tuple[Array, Array]:
     return np.where(known, a, 0.0), np.where(known, b, 0.0)
 
 
-def _with_derivatives(polynomials: Array) -> NDArray[np.float64]:
+def _with_derivatives(polynomials: Array) -> Array:
     """Return coefficients of all four rows of a motion side by side, shape (m, 6, 4 n).
 
     The product of the powers of time with such a matrix is a complete motion.
@@ -163,7 +163,7 @@ def _with_derivatives(polynomials: Array) -> NDArray[np.float64]:
     return rows.reshape(segments, TERMS, ROWS * joints)
 
 
-class MotionPlan(Protocol):
+class MotionProfile(Protocol):
     """A function of time."""
 
     @property
@@ -171,12 +171,12 @@ class MotionPlan(Protocol):
         """When the last point is reached; at most 0 if there is no motion."""
         ...
 
-    def sample(self, time_s: float) -> NDArray[np.float64]:
+    def sample(self, time_s: float) -> Array:
         """Return the motion at a time not before 0, shape (4, n); nothing in it is NaN."""
         ...
 
 
-class SplinePlan(StateValue):
+class SplineProfile(StateValue):
     """Moves from a start to the first waypoint, then along a spline through all of them.
 
     The motion to the first point is a polynomial whose degree depends on the point; values that the
@@ -188,14 +188,14 @@ class SplinePlan(StateValue):
     def __init__(
         self, start: Array, first: Array, spline: Spline, first_s: float, offset_s: float
     ) -> None:
-        """Make a plan that leads to a spline.
+        """Make a profile that leads to a spline.
 
         Args:
             start: motion at time 0, shape (4, n).
             first: motion at the spline's first point, shape (4, n).
             spline: spline through all waypoints.
             first_s: time of the first point in the spline's time.
-            offset_s: this plan's time at the spline's time 0.
+            offset_s: this profile's time at the spline's time 0.
         """
         self._spline = spline
         self._offset_s = offset_s
@@ -206,31 +206,31 @@ class SplinePlan(StateValue):
             self._lead_in = Spline(np.array([0.0, self._lead_end_s]), ends)
         self.end_s = offset_s + spline.end_s
 
-    def sample(self, time_s: float) -> NDArray[np.float64]:
+    def sample(self, time_s: float) -> Array:
         """Return the motion at a time."""
         if self._lead_in is not None and time_s + RESOLUTION_S < self._lead_end_s:
             return self._lead_in.sample(time_s)
         return self._spline.sample(time_s - self._offset_s)
 
 
-class StepPlan(StateValue):
+class StepProfile(StateValue):
     """Steps to each waypoint at the time of the previous one."""
 
     __slots__ = ("_motions", "_times_s", "end_s")
 
     def __init__(self, start: Array, motions: Array, times_s: Array) -> None:
-        """Make a plan that is at `start` until the first of `motions`, shape (m, 4, n), is due."""
+        """Make a profile that stays at `start` until the first of `motions`, (m, 4, n), is due."""
         self._motions = np.nan_to_num(np.concatenate([start[None], motions, motions[-1:]]))
         self._times_s: list[float] = times_s.tolist()
         self.end_s = self._times_s[-1]
 
-    def sample(self, time_s: float) -> NDArray[np.float64]:
+    def sample(self, time_s: float) -> Array:
         """Return the motion at a time."""
         due = bisect_right(self._times_s, time_s + RESOLUTION_S)
         return self._motions[due + 1 if due else 0].copy()
 
 
-class StopPlan(StateValue):
+class StopProfile(StateValue):
     """Brings each joint to rest with its deceleration, and keeps it there.
 
     A joint stops after the time |v| / a and the distance v |v| / (2 a).
@@ -239,7 +239,7 @@ class StopPlan(StateValue):
     __slots__ = ("_deceleration", "_position", "_rest", "_stop_s", "_velocity", "end_s")
 
     def __init__(self, position: Array, velocity: Array, deceleration: Array) -> None:
-        """Make a plan that stops; all shapes are (n,), and the deceleration is positive."""
+        """Make a profile that stops; all shapes are (n,), and the deceleration is positive."""
         self._position = position
         self._velocity = velocity
         self._deceleration = np.copysign(deceleration, velocity)
@@ -248,11 +248,11 @@ class StopPlan(StateValue):
         self._rest = at_rest(position + 0.5 * velocity * self._stop_s)
 
     @classmethod
-    def hold(cls, position: Array) -> "StopPlan":
-        """Return a plan that holds a position."""
+    def hold(cls, position: Array) -> "StopProfile":
+        """Return a profile that holds a position."""
         return cls(position.copy(), np.zeros_like(position), np.ones_like(position))
 
-    def sample(self, time_s: float) -> NDArray[np.float64]:
+    def sample(self, time_s: float) -> Array:
         """Return the motion at a time."""
         if time_s >= self.end_s:
             return self._rest.copy()
@@ -264,7 +264,7 @@ class StopPlan(StateValue):
         return motion
 
 
-class JoinedPlan(StateValue):
+class JoinedProfile(StateValue):
     """Joins a spline without a step in position, velocity or acceleration.
 
     Before its first point, the spline is extrapolated backwards with that point's velocity. The
@@ -289,8 +289,8 @@ class JoinedPlan(StateValue):
             commanded: motion at time 0, shape (4, n).
             spline: spline through all waypoints.
             first_s: time of the first point in the spline's time.
-            offset_s: this plan's time at the spline's time 0.
-            least_s: minimum time in which the difference fades; the plan ends no sooner.
+            offset_s: this profile's time at the spline's time 0.
+            least_s: minimum time in which the difference fades; the profile ends no sooner.
             continuous: which joints are continuous, shape (n,): they take the shortest rotation.
         """
         self._spline = spline
@@ -309,11 +309,11 @@ class JoinedPlan(StateValue):
         end_s = offset_s + spline.end_s
         self.end_s = max(end_s, fade_s) if difference.any() else end_s
 
-    def sample(self, time_s: float) -> NDArray[np.float64]:
+    def sample(self, time_s: float) -> Array:
         """Return the motion at a time."""
         return self._wanted(time_s) + self._difference.sample(time_s)
 
-    def _wanted(self, time_s: float) -> NDArray[np.float64]:
+    def _wanted(self, time_s: float) -> Array:
         lead_s = self._lead_end_s - time_s
         if lead_s <= RESOLUTION_S:
             return self._spline.sample(time_s - self._offset_s)
