@@ -2,7 +2,7 @@
 
 import logging
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +22,7 @@ from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.execution.remaining import remaining
 from arm_planning.kinematics.forward import ForwardKinematics, as_rigid_transform
 from arm_planning.kinematics.group_kinematics import GroupKinematics
+from arm_planning.kinematics.settings import KinematicsSettings
 from arm_planning.pipeline import (
     SceneChecker,
     Timing,
@@ -88,6 +89,7 @@ class Planner:
         *,
         resources: ResourceFinder | None = None,
         tip_limits: CartesianLimits | None = None,
+        kinematics: Mapping[str, KinematicsSettings] | None = None,
     ) -> None:
         """Make a planner.
 
@@ -96,9 +98,11 @@ class Planner:
             scene: its surroundings; by default none, all joints at 0 or their nearest limit.
             resources: finds the robot's meshes.
             tip_limits: speeds of a group's tip for Pilz' planners.
+            kinematics: settings of groups for `inverse` and `cartesian_path`.
         """
         self.model = model
         self._tip_limits = tip_limits
+        self._settings = dict(kinematics or {})
         self.scene = scene or PlanningScene(resting_positions(model))
         self._meshes = MeshPieces(resources)
         self._forward = ForwardKinematics(model)
@@ -267,6 +271,7 @@ class Planner:
         scene = scene or self.scene
         name, offset = link or ("", RigidTransform())
         solver = self._kinematics(group, scene).of(name)
+        settings = self._settings.get(group, KinematicsSettings())
         q = solver.group.positions(scene.positions)
         checks: list[Callable[[Array], bool]] = []
         if avoids_collisions:
@@ -276,7 +281,8 @@ class Planner:
         found = solver.solve(
             target.then(offset.inverse()),
             q,
-            timeout_s=timeout_s,
+            timeout_s=timeout_s or settings.timeout_s,
+            orientation=settings.orientation,
             free=(lambda q: all(check(q) for check in checks)) if checks else None,
         )
         return {**scene.positions, **dict(zip(solver.group.joints, found.tolist(), strict=True))}
@@ -323,6 +329,7 @@ class Planner:
             way_points,
             max_step_m,
             relative=relative,
+            orientation=self._settings.get(group, KinematicsSettings()).orientation,
             jumps=jumps,
             checker=checker if avoids_collisions else None,
             violation=evaluator.violation if path else None,

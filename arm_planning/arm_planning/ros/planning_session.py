@@ -55,6 +55,7 @@ class PlanningSession:
                 self.monitor.scene,
                 resources=self._setup.resources,
                 tip_limits=self._setup.tip_limits,
+                kinematics=self._setup.kinematics,
             )
         try:
             yield planner

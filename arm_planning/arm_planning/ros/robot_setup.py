@@ -2,7 +2,8 @@
 
 import logging
 import time
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from arm_description.urdf.parser import parse_urdf
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.kinematics.settings import KinematicsSettings, kinematics_settings
 from arm_planning.planner import resting_positions
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits, cartesian_limits
 from arm_planning.robot.build import planning_model
@@ -30,6 +32,7 @@ from arm_planning.srdf_maker import make_srdf
 
 URDF, SRDF = "robot_description", "robot_description_semantic"
 PLANNING = "robot_description_planning"
+KINEMATICS = "robot_description_kinematics"
 FOLLOW, POSE = "scene_from_world", "pose_in_world"
 TOPIC_TIMEOUT_S = 10.0
 LOGGER = logging.getLogger("move_group")
@@ -48,6 +51,7 @@ class PlanningSetup:
         seed: seed of all requests.
         in_world: pose of the robot's root in the simulated world whose things are objects of the
             scene; None if they are not.
+        kinematics: settings of groups' inverse kinematics.
     """
 
     model: PlanningModel
@@ -57,6 +61,7 @@ class PlanningSetup:
     tip_limits: CartesianLimits
     seed: int
     in_world: RigidTransform | None
+    kinematics: Mapping[str, KinematicsSettings] = field(default_factory=dict)
 
 
 def move_group_node() -> Node:
@@ -77,7 +82,7 @@ def read_setup(node: Node) -> PlanningSetup:
     """Return the robot that the node's parameters describe, or the topic robot_description.
 
     Raises:
-        PlanningError: there is no description, or the SRDF or a limit cannot be used.
+        PlanningError: there is no description, or the SRDF, a limit or a setting cannot be used.
         DescriptionError: the URDF cannot be used.
     """
     urdf = _text(node, URDF) or _from_topic(node, URDF)
@@ -93,8 +98,16 @@ def read_setup(node: Node) -> PlanningSetup:
     limits = joint_limit_settings(given, LOGGER.warning)
     model = planning_model(robot, semantic, limits, LOGGER.warning)
     scene = PlanningScene(resting_positions(model), allowed=allowed_collisions(semantic))
+    kinematics = kinematics_settings(values_below(node, KINEMATICS), model, LOGGER.warning)
     return PlanningSetup(
-        model, scene, srdf, resources, cartesian_limits(given), _seed(node), _in_world(node)
+        model,
+        scene,
+        srdf,
+        resources,
+        cartesian_limits(given),
+        _seed(node),
+        _in_world(node),
+        kinematics,
     )
 
 
