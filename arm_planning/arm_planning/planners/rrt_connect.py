@@ -4,10 +4,12 @@ J. Kuffner, S. LaValle: RRT-Connect: An efficient approach to single-query path 
 """
 
 from collections.abc import Iterator, Sequence
+from itertools import cycle
 
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_planning.planners.problem import length
 from arm_planning.planners.space import Space
 from arm_planning.planners.tree import Tree
 
@@ -15,8 +17,9 @@ Array = NDArray[np.float64]
 
 BLOCK = 256
 """Random states that are drawn at once."""
-REACH = 4.0
-"""Longest move, in the joints' units; something mostly blocks it before."""
+REACHES = (4.0, 4.0, 2.0, 2.0)
+"""Longest moves, in the joints' units, of iterations in turn, each for both trees. Long ones end
+soon where there is room; shorter ones make shorter paths, and turn more corners."""
 
 
 def rrt_connect(
@@ -35,10 +38,10 @@ def rrt_connect(
     """
     from_start, from_goal = Tree(start[None, :]), Tree(goals)
     explorer, follower = from_start, from_goal
-    for sample in _samples(space, seed):
-        grown = _explore(space, explorer, sample)
+    for sample, reach in zip(_samples(space, seed), cycle(REACHES), strict=False):
+        grown = _explore(space, explorer, sample, reach)
         if grown is not None:
-            met = _follow(space, follower, explorer.state(grown))
+            met = _follow(space, follower, explorer.state(grown), reach)
             if met is not None:
                 yield _joined(explorer.path(grown), follower.path(met), explorer is from_start)
                 return
@@ -52,22 +55,22 @@ def _samples(space: Space, seed: Sequence[int]) -> Iterator[Array]:
         yield from random.uniform(space.lower, space.upper, (BLOCK, len(space.lower)))
 
 
-def _explore(space: Space, tree: Tree, sample: Array) -> int | None:
+def _explore(space: Space, tree: Tree, sample: Array, reach: float) -> int | None:
     """Grow a tree one move towards a sample; return the new state's index."""
     near = tree.nearest(sample)
-    target = space.project(_towards(tree.state(near), sample, REACH))
+    target = space.project(_towards(tree.state(near), sample, reach))
     return None if target is None else _grow(space, tree, near, target)[0]
 
 
-def _follow(space: Space, tree: Tree, target: Array) -> int | None:
+def _follow(space: Space, tree: Tree, target: Array, reach: float) -> int | None:
     """Grow a tree towards a state as far as it gets; return the index where it arrives."""
     near = tree.nearest(target)
     while True:
         state = tree.state(near)
-        if np.linalg.norm(target - state) <= REACH:
+        if length(target - state) <= reach:
             grown, arrived = _grow(space, tree, near, target)
             return grown if arrived else None
-        aim = space.project(_towards(state, target, REACH))
+        aim = space.project(_towards(state, target, reach))
         if aim is None or not _nearer(aim, state, target):
             return None
         grown, arrived = _grow(space, tree, near, aim)
@@ -87,12 +90,12 @@ def _grow(space: Space, tree: Tree, parent: int, target: Array) -> tuple[int | N
 
 def _towards(state: Array, target: Array, reach: float) -> Array:
     difference = target - state
-    distance = float(np.linalg.norm(difference))
+    distance = length(difference)
     return target if distance <= reach else state + difference * (reach / distance)
 
 
 def _nearer(a: Array, b: Array, target: Array) -> bool:
-    return bool(np.linalg.norm(target - a) < 0.99 * np.linalg.norm(target - b))
+    return length(target - a) < 0.99 * length(target - b)
 
 
 def _joined(explored: Array, followed: Array, forwards: bool) -> Array:
