@@ -154,6 +154,12 @@ class PathPlanner(Protocol):
         ...
 
 
+def length(change: Array) -> float:
+    """Return the Euclidean length of a change of joints, (n,); faster than NumPy's own."""
+    return math.sqrt(change.dot(change))
+
+
 def path_length(path: Array) -> float:
     """Return the length of a polyline, (m, n), in the joints' units."""
-    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    sides = path[1:] - path[:-1]
+    return float(np.sqrt(np.einsum("ij,ij->i", sides, sides)).sum())

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.planners.problem import Deadline, path_length
+from arm_planning.planners.problem import Deadline, length, path_length
 from arm_planning.planners.space import Space
 
 Array = NDArray[np.float64]
@@ -66,13 +66,13 @@ def _with_cut_corners(path: Array, space: Space, deadline: Deadline) -> Array:
 def _cut(corner: Array, space: Space) -> Array | None:
     """Return way points, (k, n), that cut a corner of three points, (3, n); None if blocked."""
     before, middle, after = corner
-    sides = np.linalg.norm(before - middle), np.linalg.norm(after - middle)
+    sides = length(before - middle), length(after - middle)
     for share in CUTS:
         reach = share * min(sides)
         a = before if share == 1.0 else middle + (before - middle) * (reach / sides[0])
         b = after if share == 1.0 else middle + (after - middle) * (reach / sides[1])
-        around = float(np.linalg.norm(a - middle) + np.linalg.norm(b - middle))
-        if around - float(np.linalg.norm(b - a)) < LEAST_CUT:
+        around = length(a - middle) + length(b - middle)
+        if around - length(b - a) < LEAST_CUT:
             return None
         states = space.connect(a, b)
         if states is not None and path_length(np.vstack([a, states])) < around:
@@ -102,14 +102,16 @@ def _without_detours(path: Array, space: Space, deadline: Deadline) -> Array:
 
 def _shortcut(path: Array, space: Space, parts: Array) -> Array | None:
     """Try the straight way between two points that are at parts of the path's length, (2,)."""
-    lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+    sides = path[1:] - path[:-1]
+    lengths = np.zeros(len(path))
+    np.cumsum(np.sqrt(np.einsum("ij,ij->i", sides, sides)), out=lengths[1:])
     total = float(lengths[-1])
     first, second = np.sort(parts) * total
     before, after = np.searchsorted(lengths, (first, second), side="right") - 1
     if before == after:
         return None
     a, b = (_point(path, lengths, index, at) for index, at in ((before, first), (after, second)))
-    if second - first - float(np.linalg.norm(b - a)) < GAIN * total:
+    if second - first - length(b - a) < GAIN * total:
         return None
     states = space.connect(a, b)
     if states is None or path_length(np.vstack([a, states])) >= second - first:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_planning.constraints.evaluation import ConstraintEvaluator
-from arm_planning.planners.problem import PlanningProblem, StateChecker
+from arm_planning.planners.problem import PlanningProblem, StateChecker, length
 
 Array = NDArray[np.float64]
 
@@ -93,38 +93,46 @@ class SampledSpace:
 
     def advance(self, a: Array, b: Array) -> tuple[Array, bool]:
         """Go straight until something blocks, and stop a little before it."""
-        change, count = b - a, _samples(a, b)
-        step = change / count
-        states = a + np.arange(1, count + 1)[:, None] * step
+        change = b - a
+        count = _samples(change)
+        states = a + _one_after_the_other(count) * (change / count)
         free = self._free_count(states)
         if free == count:
             return b[None, :], True
         kept = free - BACK_OFF
-        if kept > 0 and kept / count * float(np.linalg.norm(change)) >= SHORTEST:
+        if kept > 0 and kept / count * length(change) >= SHORTEST:
             return states[kept - 1 : kept], False
         return states[:0], False
 
     def connect(self, a: Array, b: Array) -> Array | None:
         """Go straight; samples are taken in the order in which they find obstacles soonest."""
-        count = _samples(a, b)
-        states = a + _from_coarse_to_fine(count)[:, None] * ((b - a) / count)
+        change = b - a
+        count = _samples(change)
+        states = a + _from_coarse_to_fine(count) * (change / count)
         return b[None, :] if self._free_count(states) == count else None
 
 
 @lru_cache(maxsize=256)
-def _from_coarse_to_fine(count: int) -> NDArray[np.intp]:
-    """Return the numbers from 1 to a count: the last, the middle, those between, and so on."""
+def _one_after_the_other(count: int) -> Array:
+    """Return the numbers from 1 to a count, (count, 1)."""
+    return np.arange(1.0, count + 1.0)[:, None]
+
+
+@lru_cache(maxsize=256)
+def _from_coarse_to_fine(count: int) -> Array:
+    """Return them with the last first, then the middle, those between, and so on."""
     order, spans = [count], [(0, count)]
     for low, high in spans:
         middle = (low + high) // 2
         if middle > low:
             order.append(middle)
             spans += ((low, middle), (middle, high))
-    return np.array(order)
+    return np.array(order, np.float64)[:, None]
 
 
-def _samples(a: Array, b: Array) -> int:
-    return int(np.abs(b - a).max() / SAMPLE_STEP) + 1
+def _samples(change: Array) -> int:
+    # On so few numbers NumPy is slower.
+    return int(max(map(abs, change.tolist())) / SAMPLE_STEP) + 1
 
 
 class ProvedSpace:
