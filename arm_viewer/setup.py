@@ -5,7 +5,7 @@ from pathlib import Path
 from setuptools import find_packages, setup
 
 PACKAGE = "arm_viewer"
-NEIGHBOURS = ["../arm_description", "../arm_node"]
+NEIGHBOURS = ["../arm_description", "../arm_node", "../arm_planning"]
 REQUIREMENTS = [
     "PyYAML>=6.0",
     "networkx>=3",

@@ -21,6 +21,7 @@ from arm_viewer.panels.controller_panel import ControllerPanel
 from arm_viewer.panels.graph_panel import GraphPanel, TopicPanel
 from arm_viewer.panels.joint_panel import JointPanel
 from arm_viewer.panels.panel import Panel
+from arm_viewer.panels.planning_panel import PlanningPanel
 from arm_viewer.panels.plot_panel import PlotPanel
 from arm_viewer.panels.robot_panel import RobotPanel
 from arm_viewer.panels.status_panel import StatusPanel
@@ -93,11 +94,15 @@ async def _build(server: PageServer, send: Send, config: PageConfig | None) -> t
     above.dock_left()
     below.dock_below(above)
     above.set_width(LEFT_PANEL_WIDTH_PX)
+    tabs = gui.add_tab_group()
+    planning = PlanningPanel(server.scene, frames, send, tabs.add_tab)
+    planning.build(gui)
     return (
         status,
-        *_build_tabs(main, gui, gui.add_tab_group().add_tab),
+        *_build_tabs(main, gui, tabs.add_tab),
         *_build_tabs(cameras, gui, above.add_tab),
         *_build_tabs(plots, gui, below.add_tab),
+        planning,
     )
 
 

@@ -1,6 +1,6 @@
 """Requests from the page to the ROS thread: frozen data that any thread may put into the queue."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 
@@ -66,6 +66,61 @@ class Watch:
     wanted: bool
 
 
-Request = Watch | ShowPictures | MoveJoints | SwitchControllers | Configure | MeasureRates
+@dataclass(frozen=True, slots=True)
+class SetGoal:
+    """Choose where a group is to go.
+
+    Attributes:
+        namespace: namespace of the move_group.
+        group: name of the group.
+        positions: positions in rad or m, by joint; joints without one stay where they are.
+    """
+
+    namespace: str
+    group: str
+    positions: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class PlanMotion:
+    """Plan to the goal.
+
+    Attributes:
+        namespace: namespace of the move_group.
+        velocity: fraction of the velocity limits.
+        acceleration: fraction of the acceleration limits.
+        executes: whether the robot moves as soon as there is a plan.
+    """
+
+    namespace: str
+    velocity: float
+    acceleration: float
+    executes: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ExecutePlan:
+    """Execute the latest plan of this page."""
+
+    namespace: str
+
+
+@dataclass(frozen=True, slots=True)
+class StopMotion:
+    """Stop planning and whatever motion the move_group executes."""
+
+    namespace: str
+
+
+PlanningRequest = SetGoal | PlanMotion | ExecutePlan | StopMotion
+Request = (
+    Watch
+    | ShowPictures
+    | MoveJoints
+    | SwitchControllers
+    | Configure
+    | MeasureRates
+    | PlanningRequest
+)
 Send = Callable[[Request], None]
 """Passes a request to the ROS thread without blocking; any thread may call it."""

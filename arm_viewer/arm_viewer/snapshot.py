@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,10 @@ from numpy.typing import NDArray
 from arm_description.urdf.robot import Robot
 from arm_node.drawing import NodeTopics
 from arm_node.rigid_transform import RigidTransform
+
+if TYPE_CHECKING:
+    # Imported at run time only where a move_group runs.
+    from arm_viewer.planning import PlanningView
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,6 +234,8 @@ class Snapshot:
     """None if /clock has no publisher."""
     topics: tuple[Topic, ...] = ()
     nodes: tuple[NodeTopics, ...] = ()
+    planning: "Mapping[str, PlanningView]" = field(default_factory=lambda: MappingProxyType({}))
+    """The move_groups, by namespace."""
 
 
 def frame_name(frame_id: str) -> str:

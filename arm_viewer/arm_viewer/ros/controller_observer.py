@@ -8,7 +8,7 @@ from rclpy.node import Node
 
 from arm_node.controller_manager import SERVICES, switch_request
 from arm_viewer.requests import Configure, SwitchControllers
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import TopicTypes, served
 from arm_viewer.ros.service_caller import ServiceCaller
 from arm_viewer.snapshot import ListedController
 
@@ -33,11 +33,7 @@ class ControllerObserver:
 
     def discover(self, topics: TopicTypes) -> None:
         """Query every present manager; forget managers that have disappeared."""
-        found = {
-            service.removesuffix(SERVICE)
-            for service, types in self._node.get_service_names_and_types()
-            if service.endswith(SERVICE) and SERVICE_TYPE in types
-        }
+        found = served(self._node, SERVICE, SERVICE_TYPE)
         for name in self._managers.keys() - found:
             self._managers.pop(name).close()
         for name in sorted(found - self._managers.keys()):

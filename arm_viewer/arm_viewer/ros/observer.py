@@ -49,3 +49,15 @@ def topics_of(message_class: type, topics: TopicTypes, node: Node) -> set[str]:
         for topic, types in topics.items()
         if wanted in types and used.get(topic, wanted) == wanted
     }
+
+
+def served(node: Node, suffix: str, service_type: str) -> set[str]:
+    """Return what stands before a suffix in the names of services of a type that have servers.
+
+    The graph also lists services that only have clients, such as the page's own.
+    """
+    return {
+        service.removesuffix(suffix)
+        for service, types in node.get_service_names_and_types()
+        if service.endswith(suffix) and service_type in types and node.count_services(service)
+    }

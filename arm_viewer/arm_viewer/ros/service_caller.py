@@ -14,8 +14,19 @@ MAX_WAIT_S = 3.0
 class ServiceCaller:
     """A service client with at most one pending call. Use it in the executor's thread."""
 
-    def __init__(self, node: Node, service_class: Any, service: str) -> None:
-        """Create the client."""
+    def __init__(
+        self, node: Node, service_class: Any, service: str, max_wait_s: float = MAX_WAIT_S
+    ) -> None:
+        """Create the client.
+
+        Args:
+            node: gets the client.
+            service_class: type of the service.
+            service: name of the service.
+            max_wait_s: after this time a response counts as lost, and the next call is allowed.
+        """
+        self.service = service
+        self._max_wait_s = max_wait_s
         self._node = node
         self._client = node.create_client(service_class, service)
         self._pending: Future | None = None
@@ -26,28 +37,37 @@ class ServiceCaller:
 
         It is not sent if the server is not available or an earlier call is pending.
         """
-        now_s = time.monotonic()
-        if self._pending is not None and now_s - self._asked_s < MAX_WAIT_S:
+        if self._pending is not None and not self.is_overdue():
             return False
-        self._forget()
-        if not self._client.service_is_ready():
+        self.forget()
+        if not self.is_ready():
             return False
-        self._asked_s = now_s
+        self._asked_s = time.monotonic()
         self._pending = self._client.call_async(request)
         self._pending.add_done_callback(lambda future: self._answer(future, then))
         return True
 
+    def is_ready(self) -> bool:
+        """Return whether the server is available."""
+        return self._client.service_is_ready()
+
+    def is_overdue(self) -> bool:
+        """Return whether a response has not arrived in time."""
+        late_s = time.monotonic() - self._asked_s
+        return self._pending is not None and late_s >= self._max_wait_s
+
     def close(self) -> None:
         """Destroy the client; a pending response is dropped."""
-        self._forget()
+        self.forget()
         self._node.destroy_client(self._client)
+
+    def forget(self) -> None:
+        """Drop a pending response."""
+        if self._pending is not None:
+            pending, self._pending = self._pending, None
+            self._client.remove_pending_request(pending)
 
     def _answer(self, future: Future, then: Callable[[Any], None]) -> None:
         if future is self._pending:
             self._pending = None
             then(future.result())
-
-    def _forget(self) -> None:
-        if self._pending is not None:
-            pending, self._pending = self._pending, None
-            self._client.remove_pending_request(pending)

@@ -16,6 +16,7 @@ from arm_viewer.requests import (
     Configure,
     MeasureRates,
     MoveJoints,
+    PlanningRequest,
     Request,
     ShowPictures,
     SwitchControllers,
@@ -30,6 +31,7 @@ from arm_viewer.ros.joint_commander import JointCommander, JointStateSource
 from arm_viewer.ros.joint_observer import HardwareObserver, JointStateObserver
 from arm_viewer.ros.marker_observer import MarkerObserver
 from arm_viewer.ros.observer import Observer
+from arm_viewer.ros.planning_observer import PlanningObserver
 from arm_viewer.ros.robot_observer import DescriptionObserver, TransformObserver
 from arm_viewer.snapshot import ListedController, Snapshot
 
@@ -74,6 +76,7 @@ class Viewer(Node):
         self._simulation_clock = ClockObserver(self, polled)
         self._topics = TopicObserver(self, polled)
         self._nodes = NodeObserver(self)
+        self._planning = PlanningObserver(self, polled, self.latest)
         self._observers: tuple[Observer, ...] = (
             self._descriptions,
             self._transforms,
@@ -89,6 +92,7 @@ class Viewer(Node):
             self._simulation_clock,
             self._topics,
             self._nodes,
+            self._planning,
         )
         self._logged: set[str] = set()
         self._latest = Snapshot()
@@ -153,6 +157,7 @@ class Viewer(Node):
             time=self._simulation_clock.time,
             topics=self._topics.topics,
             nodes=self._nodes.nodes,
+            planning=self._planning.views,
         )
 
     def _serve(self) -> None:
@@ -176,6 +181,8 @@ class Viewer(Node):
                     self._managers.serve(request)
                 case MeasureRates():
                     self._topics.measure(request.wanted)
+                case _ if isinstance(request, PlanningRequest):
+                    self._planning.serve(request)
 
     def _listed(self) -> tuple[ListedController, ...]:
         return self._controllers.controllers

@@ -1,0 +1,160 @@
+"""Plans and executes motions of one robot: its goal, its buttons, and the plan in the scene."""
+
+import math
+from collections.abc import Mapping
+
+from viser import GuiApi, GuiButtonHandle, SceneApi
+
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.robot.model import JointPositions
+from arm_viewer.panels.panel import PROBLEM_COLOUR, note
+from arm_viewer.panels.path_player import PathPlayer
+from arm_viewer.panels.robot_panel import link_frames
+from arm_viewer.planning import Activity, PlanningView, default_group, named_poses
+from arm_viewer.requests import ExecutePlan, PlanMotion, Request, Send, SetGoal, StopMotion
+from arm_viewer.scene.frames import Frames
+from arm_viewer.scene.ghost import Colour, Ghost
+from arm_viewer.snapshot import Snapshot
+
+GOAL_COLOUR: Colour = (240, 140, 30)
+NO_POSE = "choose..."
+PRESENT = "(where it is)"
+LEAST_SCALING, STEP = 0.01, 0.01
+
+
+class MotionPanel:
+    """The elements of one move_group; use it in viser's event loop."""
+
+    def __init__(
+        self, gui: GuiApi, scene: SceneApi, frames: Frames, send: Send, view: PlanningView
+    ) -> None:
+        """Create the elements in the open container."""
+        self._model = view.model
+        self._namespace = view.namespace
+        self._frames = frames
+        self._send = send
+        self._ghost = Ghost(scene, f"{view.namespace}/goal", view.model, GOAL_COLOUR)
+        title = f"Motion of {view.namespace}" if view.namespace else "Motion"
+        self._folder = gui.add_folder(title)
+        with self._folder:
+            self._build_goal(gui)
+            self._build_motion(gui)
+            self._player = PathPlayer(gui, scene, view.namespace, view.model)
+        self._shown: dict[str, str] = {}
+
+    def is_for(self, snapshot: Snapshot) -> bool:
+        """Return whether its move_group and robot are still there."""
+        view = snapshot.planning.get(self._namespace)
+        return view is not None and view.model is self._model
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Show the move_group's state."""
+        view = snapshot.planning[self._namespace]
+        robot = self._model.robot
+        places = link_frames(robot, self._namespace, self._frames.known)
+        origin = self._frames.known.get(places[robot.root], RigidTransform())
+        present = _present(snapshot, self._namespace)
+        self._show_goal(view, origin, present)
+        self._player.update(view.plan, origin, present, snapshot.made_s)
+        is_busy = view.activity is not Activity.NONE
+        for button in (self._plan, self._move):
+            _set_disabled(button, is_busy or view.goal is None)
+        _set_disabled(self._execute, is_busy or view.plan is None or not view.plan.is_own)
+        self._say("said", *_said(view))
+
+    def remove(self) -> None:
+        """Remove everything from the page."""
+        self._ghost.remove()
+        self._player.remove()
+        self._folder.remove()
+
+    def _build_goal(self, gui: GuiApi) -> None:
+        groups = tuple(self._model.groups)
+        self._group = gui.add_dropdown(
+            "Group", groups, initial_value=default_group(self._model), hint="joints to move"
+        )
+        self._pose = gui.add_dropdown("Pose", self._pose_names(), hint="named poses of the group")
+        self._goal_shown = gui.add_checkbox("Show goal", True, hint="a ghost where the robot goes")
+        self._texts = {"goal": gui.add_html("", visible=False)}
+        self._group.on_update(lambda _: self._choose_group())
+        self._pose.on_update(lambda event: self._choose_pose(event.client_id))
+
+    def _build_motion(self, gui: GuiApi) -> None:
+        self._velocity = gui.add_slider(
+            "Velocity", LEAST_SCALING, 1.0, STEP, 1.0, hint="fraction of the velocity limits"
+        )
+        self._acceleration = gui.add_slider(
+            "Acceleration",
+            LEAST_SCALING,
+            1.0,
+            STEP,
+            1.0,
+            hint="fraction of the acceleration limits",
+        )
+        self._plan = gui.add_button("Plan")
+        self._move = gui.add_button("Plan & Execute")
+        self._execute = gui.add_button("Execute", hint="move along the plan that is shown")
+        stop = gui.add_button("Stop", color="red", hint="stop planning, and every planned motion")
+        self._texts["said"] = gui.add_html("", visible=False)
+        self._plan.on_click(lambda _: self._send(self._wish(executes=False)))
+        self._move.on_click(lambda _: self._send(self._wish(executes=True)))
+        self._execute.on_click(lambda _: self._send(ExecutePlan(self._namespace)))
+        stop.on_click(lambda _: self._send(StopMotion(self._namespace)))
+
+    def _wish(self, executes: bool) -> Request:
+        velocity, acceleration = self._velocity.value, self._acceleration.value
+        return PlanMotion(self._namespace, velocity, acceleration, executes)
+
+    def _pose_names(self) -> tuple[str, ...]:
+        return (NO_POSE, PRESENT, *named_poses(self._model, self._group.value))
+
+    def _choose_group(self) -> None:
+        self._pose.options = self._pose_names()
+        self._pose.value = NO_POSE
+
+    def _choose_pose(self, client_id: int | None) -> None:
+        # Without a client the group was changed, which chooses no pose.
+        name, group = self._pose.value, self._group.value
+        if client_id is None or name == NO_POSE:
+            return
+        positions: JointPositions = {}
+        if name != PRESENT:
+            positions = named_poses(self._model, group)[name]
+        self._send(SetGoal(self._namespace, group, positions))
+
+    def _show_goal(
+        self, view: PlanningView, origin: RigidTransform, present: Mapping[str, float]
+    ) -> None:
+        goal = view.goal
+        self._say("goal", goal.sentence if goal else "", PROBLEM_COLOUR)
+        if goal is None or not self._goal_shown.value:
+            self._ghost.hide()
+        else:
+            self._ghost.show(origin, goal.positions, present, goal.colliding)
+
+    def _say(self, place: str, sentence: str, colour: str) -> None:
+        content = note(sentence, colour)
+        if self._shown.get(place) != content:
+            self._shown[place] = content
+            self._texts[place].content = content
+            self._texts[place].visible = bool(sentence)
+
+
+def _present(snapshot: Snapshot, namespace: str) -> Mapping[str, float]:
+    states = snapshot.joint_states.get(f"{namespace}/joint_states")
+    joints = {} if states is None else states.joints
+    return {name: r.position for name, r in joints.items() if math.isfinite(r.position)}
+
+
+def _said(view: PlanningView) -> tuple[str, str]:
+    """Return what to say about plans and motions, and in which colour."""
+    lines = [view.activity.value, view.said]
+    if view.plan is not None:
+        who = "Plan" if view.plan.is_own else "Plan of another program"
+        lines.insert(0, f"{who}: {view.plan.path.summary(view.plan.planning_time_s)}")
+    return "\n".join(filter(None, lines)), PROBLEM_COLOUR if view.failed else "inherit"
+
+
+def _set_disabled(button: GuiButtonHandle, disabled: bool) -> None:
+    if button.disabled != disabled:
+        button.disabled = disabled

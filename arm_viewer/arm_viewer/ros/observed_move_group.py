@@ -1,0 +1,103 @@
+"""One move_group: its robot, the goal that the page has chosen, plans and motions."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from rclpy.node import Node
+
+from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_planning.robot.model import JointPositions, PlanningModel
+from arm_viewer.planning import GoalState, PlanningView, filled
+from arm_viewer.requests import (
+    ExecutePlan,
+    PlanMotion,
+    PlanningRequest,
+    SetGoal,
+    StopMotion,
+)
+from arm_viewer.ros.goal_checker import GoalChecker
+from arm_viewer.ros.motion_caller import MotionCaller
+
+
+class ObservedMoveGroup:
+    """Use it in the executor's thread.
+
+    Attributes:
+        view: what the page shows; a new object after each change.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        polled: PolledSubscriptions,
+        namespace: str,
+        model: PlanningModel,
+        present: Callable[[], Mapping[str, float]],
+    ) -> None:
+        """Create the clients.
+
+        Args:
+            node: gets the clients.
+            polled: makes the subscriptions.
+            namespace: of the move_group.
+            model: the robot.
+            present: returns the present positions of joints.
+        """
+        self.view = PlanningView(namespace, model)
+        self._model = model
+        self._present = present
+        self._motions = MotionCaller(node, polled, namespace, model)
+        self._checker = GoalChecker(node, namespace, self._take_checked)
+
+    def serve(self, request: PlanningRequest) -> None:
+        """Do what the user wants."""
+        match request:
+            case SetGoal():
+                self._set_goal(request.group, request.positions)
+            case PlanMotion():
+                self._motions.start(self.view.goal, request)
+            case ExecutePlan():
+                self._motions.execute()
+            case StopMotion():
+                self._motions.stop()
+
+    def collect(self) -> None:
+        """Take what has arrived."""
+        self._checker.ask()
+        self._motions.collect()
+        motions = self._motions
+        view = replace(
+            self.view,
+            plan=motions.plan,
+            activity=motions.activity,
+            said=motions.said,
+            failed=motions.failed,
+        )
+        if view != self.view:
+            self.view = view
+
+    def check(self) -> None:
+        """End what is late; call it periodically."""
+        self._motions.check()
+
+    def close(self) -> None:
+        """Destroy the clients."""
+        self._motions.close()
+        self._checker.close()
+
+    def _set_goal(self, name: str, positions: JointPositions) -> None:
+        group = self._model.groups.get(name)
+        if group is None:
+            return
+        goal = GoalState(name, filled(group, positions, self._present()))
+        self._motions.drop_plan()
+        self._keep(goal)
+        self._checker.check(goal)
+
+    def _take_checked(self, checked: GoalState) -> None:
+        goal = self.view.goal
+        if goal is not None and (goal.group, goal.positions) == (checked.group, checked.positions):
+            self._keep(replace(goal, colliding=checked.colliding, contacts=checked.contacts))
+
+    def _keep(self, goal: GoalState) -> None:
+        self.view = replace(self.view, goal=goal)

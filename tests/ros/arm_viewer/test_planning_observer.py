@@ -1,0 +1,146 @@
+"""What the page's node makes of a move_group that fails, falls silent or ends."""
+
+from functools import partial
+
+import pytest
+
+pytestmark = pytest.mark.ros
+
+URDF = """<robot name='r'><link name='base'/><link name='arm'/>
+  <joint name='turn' type='revolute'><parent link='base'/><child link='arm'/>
+    <limit lower='-1' upper='1' effort='1' velocity='1'/></joint></robot>"""
+SRDF = """<robot name='r'><group name='all'><joint name='turn'/></group>
+  <group_state name='left' group='all'><joint name='turn' value='0.5'/></group_state></robot>"""
+NAME, SILENT = "/fake", "/silent"
+
+
+class FakeMoveGroup:
+    """Serves as much of a move_group as a test wants, on a node that one may leave unspun."""
+
+    def __init__(self, node, name) -> None:
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+        from std_msgs.msg import String
+
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._node = node
+        self._name = name
+        self._services = []
+        for topic, text in (("robot_description", URDF), ("robot_description_semantic", SRDF)):
+            publisher = node.create_publisher(String, f"{name}/{topic}", latched)
+            publisher.publish(String(data=text))
+
+    def serve(self, kind, name, answer) -> None:
+        self._services.append(
+            self._node.create_service(kind, f"{self._name}/{name}", lambda _, empty: answer(empty))
+        )
+
+    def serve_action(self, action, name, answer) -> None:
+        self.serve(action.Impl.SendGoalService, f"{name}/_action/send_goal", accept)
+        self.serve(action.Impl.GetResultService, f"{name}/_action/get_result", answer)
+
+    def end(self) -> None:
+        for service in self._services:
+            self._node.destroy_service(service)
+        self._services.clear()
+
+
+def accept(answer):
+    answer.accepted = True
+    return answer
+
+
+def refuse_plan(answer):
+    answer.result.error_code.val = -12
+    answer.result.error_code.message = "goal is in collision: arm with box1, 3 mm deep"
+    return answer
+
+
+def touch(answer):
+    from moveit_msgs.msg import ContactInformation
+
+    contact = ContactInformation(contact_body_1="arm", contact_body_2="box1", body_type_2=1)
+    contact.depth = 0.003
+    answer.contacts = [contact]
+    return answer
+
+
+@pytest.fixture(scope="module")
+def move_group(client_for_file, viewer):
+    from moveit_msgs.action import ExecuteTrajectory, MoveGroup
+    from moveit_msgs.srv import GetStateValidity
+
+    fake = FakeMoveGroup(client_for_file.node, NAME)
+    fake.serve_action(MoveGroup, "move_action", refuse_plan)
+    fake.serve_action(ExecuteTrajectory, "execute_trajectory", lambda answer: answer)
+    fake.serve(GetStateValidity, "check_state_validity", touch)
+    viewer.seen(lambda s: NAME in s.planning)
+    return fake
+
+
+@pytest.fixture
+def ask(viewer):
+    """Send a request, and wait until it shows in the view of its move_group."""
+
+    def send(request, seen):
+        viewer.node.send(request)
+        return viewer.seen(lambda s: seen(s.planning[request.namespace]))
+
+    return send
+
+
+def chosen(name=NAME):
+    from arm_viewer.requests import SetGoal
+
+    return SetGoal(name, "all", {"turn": 0.5})
+
+
+def planned(name=NAME):
+    from arm_viewer.requests import PlanMotion
+
+    return PlanMotion(name, 1.0, 1.0, executes=False)
+
+
+def test_groups_and_named_poses_come_from_the_semantic_description(move_group, viewer):
+    model = viewer.node.latest().planning[NAME].model
+    assert model.state("all", "left") == {"turn": 0.5}
+
+
+def test_without_a_goal_or_a_plan_it_says_what_is_missing(move_group, ask):
+    from arm_viewer.requests import ExecutePlan
+
+    view = ask(planned(), lambda view: view.said and view)
+    assert "Choose a goal first" in view.said
+    view = ask(ExecutePlan(NAME), lambda view: "no plan" in view.said and view)
+    assert view.failed
+
+
+def test_a_goal_in_collision_names_what_touches(move_group, ask):
+    goal = ask(chosen(), lambda view: view.goal and view.goal.contacts and view.goal)
+    assert goal.sentence == "The goal is in collision: arm with box1, 3 mm deep"
+    assert goal.colliding == {"arm"}
+
+
+def test_a_failed_plan_says_why_in_full(move_group, ask):
+    ask(chosen(), lambda view: view.goal)
+    view = ask(planned(), lambda view: view.failed and view)
+    assert view.failed
+    assert view.said == "goal is in collision: arm with box1, 3 mm deep (GOAL_IN_COLLISION)"
+    assert view.plan is None
+
+
+def test_a_move_group_that_never_answers_is_said_to_and_one_that_ends_is_gone(viewer, ask):
+    from moveit_msgs.action import ExecuteTrajectory, MoveGroup
+    from rclpy.node import Node
+
+    # Nobody spins this node.
+    node = Node("silent", context=viewer.context)
+    fake = FakeMoveGroup(node, SILENT)
+    for action, name in ((MoveGroup, "move_action"), (ExecuteTrajectory, "execute_trajectory")):
+        fake.serve_action(action, name, partial(pytest.fail, "it is spun"))
+    viewer.seen(lambda s: SILENT in s.planning)
+    ask(chosen(SILENT), lambda view: view.goal)
+    view = ask(planned(SILENT), lambda view: view.failed and view)
+    assert view.said == f"{SILENT}/move_action does not answer"
+    fake.end()
+    viewer.seen(lambda s: SILENT not in s.planning)
+    node.destroy_node()
