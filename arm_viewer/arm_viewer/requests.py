@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from arm_node.rigid_transform import RigidTransform
+
 
 @dataclass(frozen=True, slots=True)
 class MoveJoints:
@@ -82,6 +84,21 @@ class SetGoal:
 
 
 @dataclass(frozen=True, slots=True)
+class DragTip:
+    """Choose where the tip of a group is to go.
+
+    Attributes:
+        namespace: namespace of the move_group.
+        group: name of the group.
+        pose: pose of the group's tip in the frame of the robot's root link.
+    """
+
+    namespace: str
+    group: str
+    pose: RigidTransform
+
+
+@dataclass(frozen=True, slots=True)
 class PlanMotion:
     """Plan to the goal.
 
@@ -112,7 +129,7 @@ class StopMotion:
     namespace: str
 
 
-PlanningRequest = SetGoal | PlanMotion | ExecutePlan | StopMotion
+PlanningRequest = SetGoal | DragTip | PlanMotion | ExecutePlan | StopMotion
 Request = (
     Watch
     | ShowPictures

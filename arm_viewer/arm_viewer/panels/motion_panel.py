@@ -7,13 +7,15 @@ from viser import GuiApi, GuiButtonHandle, SceneApi
 
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.robot.model import JointPositions
+from arm_planning.scene.frames import LinkPoses
 from arm_viewer.panels.panel import PROBLEM_COLOUR, note
 from arm_viewer.panels.path_player import PathPlayer
 from arm_viewer.panels.robot_panel import link_frames
 from arm_viewer.planning import Activity, PlanningView, default_group, named_poses
-from arm_viewer.requests import ExecutePlan, PlanMotion, Request, Send, SetGoal, StopMotion
+from arm_viewer.requests import DragTip, ExecutePlan, PlanMotion, Request, Send, SetGoal, StopMotion
 from arm_viewer.scene.frames import Frames
 from arm_viewer.scene.ghost import Colour, Ghost
+from arm_viewer.scene.tip_handle import TipHandle
 from arm_viewer.snapshot import Snapshot
 
 GOAL_COLOUR: Colour = (240, 140, 30)
@@ -34,6 +36,7 @@ class MotionPanel:
         self._frames = frames
         self._send = send
         self._ghost = Ghost(scene, f"{view.namespace}/goal", view.model, GOAL_COLOUR)
+        self._handle = TipHandle(scene, f"{view.namespace}/tip")
         title = f"Motion of {view.namespace}" if view.namespace else "Motion"
         self._folder = gui.add_folder(title)
         with self._folder:
@@ -55,6 +58,7 @@ class MotionPanel:
         origin = self._frames.known.get(places[robot.root], RigidTransform())
         present = _present(snapshot, self._namespace)
         self._show_goal(view, origin, present)
+        self._show_handle(view, origin, present)
         self._player.update(view.plan, origin, present, snapshot.made_s)
         is_busy = view.activity is not Activity.NONE
         for button in (self._plan, self._move):
@@ -65,6 +69,7 @@ class MotionPanel:
     def remove(self) -> None:
         """Remove everything from the page."""
         self._ghost.remove()
+        self._handle.remove()
         self._player.remove()
         self._folder.remove()
 
@@ -75,6 +80,9 @@ class MotionPanel:
         )
         self._pose = gui.add_dropdown("Pose", self._pose_names(), hint="named poses of the group")
         self._goal_shown = gui.add_checkbox("Show goal", True, hint="a ghost where the robot goes")
+        self._drags = gui.add_checkbox(
+            "Drag tip", False, hint="arrows and rings at the goal's tip; drag them"
+        )
         self._texts = {"goal": gui.add_html("", visible=False)}
         self._group.on_update(lambda _: self._choose_group())
         self._pose.on_update(lambda event: self._choose_pose(event.client_id))
@@ -131,6 +139,21 @@ class MotionPanel:
             self._ghost.hide()
         else:
             self._ghost.show(origin, goal.positions, present, goal.colliding)
+
+    def _show_handle(
+        self, view: PlanningView, origin: RigidTransform, present: Mapping[str, float]
+    ) -> None:
+        group, goal = self._model.groups.get(self._group.value), view.goal
+        if group is None or not group.tip or not self._drags.value:
+            self._handle.hide()
+            return
+        pulled = self._handle.pulled()
+        if pulled is not None:
+            self._pose.value = NO_POSE
+            self._send(DragTip(self._namespace, group.name, origin.inverse().then(pulled)))
+        known = goal.positions if goal is not None and goal.group == group.name else {}
+        tip = LinkPoses(self._model, {**present, **known})[group.tip]
+        self._handle.show(origin.then(tip))
 
     def _say(self, place: str, sentence: str, colour: str) -> None:
         content = note(sentence, colour)

@@ -25,7 +25,7 @@ PLANNING_TIME_S = 5.0
 EXTRA_TIME_S = 10.0
 """How much longer a plan may take to arrive: move_group may serve others first."""
 STOP = "stop"
-NO_GOAL = "Choose a goal first: a named pose, or drag the handle at the goal."
+NO_GOAL = "Choose a goal first: a named pose, or drag the tip."
 NO_PLAN = "There is no plan to execute; plan first."
 BUSY = "move_group is still at work; stop it first."
 ARRIVED = "The robot has arrived."

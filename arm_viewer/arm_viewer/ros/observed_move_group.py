@@ -9,6 +9,7 @@ from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_viewer.planning import GoalState, PlanningView, filled
 from arm_viewer.requests import (
+    DragTip,
     ExecutePlan,
     PlanMotion,
     PlanningRequest,
@@ -17,6 +18,7 @@ from arm_viewer.requests import (
 )
 from arm_viewer.ros.goal_checker import GoalChecker
 from arm_viewer.ros.motion_caller import MotionCaller
+from arm_viewer.ros.tip_solver import TipPose, TipSolver
 
 
 class ObservedMoveGroup:
@@ -48,12 +50,15 @@ class ObservedMoveGroup:
         self._present = present
         self._motions = MotionCaller(node, polled, namespace, model)
         self._checker = GoalChecker(node, namespace, self._take_checked)
+        self._solver = TipSolver(node, namespace, self._seed, self._take_solved)
 
     def serve(self, request: PlanningRequest) -> None:
         """Do what the user wants."""
         match request:
             case SetGoal():
                 self._set_goal(request.group, request.positions)
+            case DragTip():
+                self._drag(request)
             case PlanMotion():
                 self._motions.start(self.view.goal, request)
             case ExecutePlan():
@@ -63,6 +68,7 @@ class ObservedMoveGroup:
 
     def collect(self) -> None:
         """Take what has arrived."""
+        self._solver.ask()
         self._checker.ask()
         self._motions.collect()
         motions = self._motions
@@ -84,6 +90,7 @@ class ObservedMoveGroup:
         """Destroy the clients."""
         self._motions.close()
         self._checker.close()
+        self._solver.close()
 
     def _set_goal(self, name: str, positions: JointPositions) -> None:
         group = self._model.groups.get(name)
@@ -93,6 +100,27 @@ class ObservedMoveGroup:
         self._motions.drop_plan()
         self._keep(goal)
         self._checker.check(goal)
+
+    def _drag(self, request: DragTip) -> None:
+        group = self._model.groups.get(request.group)
+        if group is not None and group.tip:
+            root = self._model.robot.root
+            self._solver.solve(TipPose(group.name, group.tip, root, request.pose))
+
+    def _seed(self, name: str) -> JointPositions:
+        """Return the goal of a group, or the present positions where it has none."""
+        goal = self.view.goal
+        known = goal.positions if goal is not None and goal.group == name else {}
+        return filled(self._model.groups[name], known, self._present())
+
+    def _take_solved(self, asked: TipPose, found: JointPositions | None, problem: str) -> None:
+        if found is not None:
+            self._set_goal(asked.group, found)
+            return
+        goal = self.view.goal
+        if goal is None or goal.group != asked.group:
+            goal = GoalState(asked.group, self._seed(asked.group))
+        self._keep(replace(goal, problem=problem))
 
     def _take_checked(self, checked: GoalState) -> None:
         goal = self.view.goal

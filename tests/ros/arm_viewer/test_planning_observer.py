@@ -30,9 +30,7 @@ class FakeMoveGroup:
             publisher.publish(String(data=text))
 
     def serve(self, kind, name, answer) -> None:
-        self._services.append(
-            self._node.create_service(kind, f"{self._name}/{name}", lambda _, empty: answer(empty))
-        )
+        self._services.append(self._node.create_service(kind, f"{self._name}/{name}", answer))
 
     def serve_action(self, action, name, answer) -> None:
         self.serve(action.Impl.SendGoalService, f"{name}/_action/send_goal", accept)
@@ -44,18 +42,31 @@ class FakeMoveGroup:
         self._services.clear()
 
 
-def accept(answer):
+def accept(_, answer):
     answer.accepted = True
     return answer
 
 
-def refuse_plan(answer):
+def refuse_plan(_, answer):
     answer.result.error_code.val = -12
     answer.result.error_code.message = "goal is in collision: arm with box1, 3 mm deep"
     return answer
 
 
-def touch(answer):
+def solve(request, answer):
+    """Turn the joint by the wanted height; nothing reaches below the ground."""
+    height_m = request.ik_request.pose_stamped.pose.position.z
+    if height_m < 0.0:
+        answer.error_code.val = -31
+        answer.error_code.message = "the pose is below the ground"
+        return answer
+    answer.error_code.val = 1
+    answer.solution.joint_state.name = ["turn", "another"]
+    answer.solution.joint_state.position = [height_m, 9.0]
+    return answer
+
+
+def touch(_, answer):
     from moveit_msgs.msg import ContactInformation
 
     contact = ContactInformation(contact_body_1="arm", contact_body_2="box1", body_type_2=1)
@@ -67,12 +78,13 @@ def touch(answer):
 @pytest.fixture(scope="module")
 def move_group(client_for_file, viewer):
     from moveit_msgs.action import ExecuteTrajectory, MoveGroup
-    from moveit_msgs.srv import GetStateValidity
+    from moveit_msgs.srv import GetPositionIK, GetStateValidity
 
     fake = FakeMoveGroup(client_for_file.node, NAME)
     fake.serve_action(MoveGroup, "move_action", refuse_plan)
-    fake.serve_action(ExecuteTrajectory, "execute_trajectory", lambda answer: answer)
+    fake.serve_action(ExecuteTrajectory, "execute_trajectory", lambda _, answer: answer)
     fake.serve(GetStateValidity, "check_state_validity", touch)
+    fake.serve(GetPositionIK, "compute_ik", solve)
     viewer.seen(lambda s: NAME in s.planning)
     return fake
 
@@ -118,6 +130,20 @@ def test_a_goal_in_collision_names_what_touches(move_group, ask):
     goal = ask(chosen(), lambda view: view.goal and view.goal.contacts and view.goal)
     assert goal.sentence == "The goal is in collision: arm with box1, 3 mm deep"
     assert goal.colliding == {"arm"}
+
+
+def test_the_goal_follows_the_tip_and_stays_where_it_cannot(move_group, ask):
+    from arm_node.rigid_transform import RigidTransform
+    from arm_viewer.requests import DragTip
+
+    high, low = (DragTip(NAME, "all", RigidTransform((0.0, 0.0, z))) for z in (0.25, -0.25))
+    goal = ask(high, lambda view: view.goal and view.goal.positions["turn"] == 0.25 and view.goal)
+    assert (goal.positions, goal.problem) == ({"turn": 0.25}, "")
+    goal = ask(low, lambda view: view.goal.problem and view.goal)
+    assert goal.problem == "The tip cannot be there: the pose is below the ground"
+    assert goal.positions == {"turn": 0.25}
+    goal = ask(high, lambda view: not view.goal.problem and view.goal)
+    assert goal.positions == {"turn": 0.25}
 
 
 def test_a_failed_plan_says_why_in_full(move_group, ask):
