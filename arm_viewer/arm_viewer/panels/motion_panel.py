@@ -12,7 +12,14 @@ from arm_viewer.panels.panel import PROBLEM_COLOUR, note
 from arm_viewer.panels.path_player import PathPlayer
 from arm_viewer.panels.robot_panel import link_frames
 from arm_viewer.planning import Activity, PlanningView, default_group, named_poses
-from arm_viewer.requests import DragTip, ExecutePlan, PlanMotion, Request, Send, SetGoal, StopMotion
+from arm_viewer.planning_requests import (
+    DragTip,
+    ExecutePlan,
+    PlanMotion,
+    SetGoal,
+    StopMotion,
+)
+from arm_viewer.requests import Request, Send
 from arm_viewer.scene.frames import Frames
 from arm_viewer.scene.ghost import Colour, Ghost
 from arm_viewer.scene.tip_handle import TipHandle

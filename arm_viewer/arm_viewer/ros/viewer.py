@@ -12,11 +12,11 @@ from arm_node.parameter_values import IntegerReader, read_flag, read_text
 from arm_node.parameters import declare
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.printable import printable
+from arm_viewer.planning_requests import PlanningRequest
 from arm_viewer.requests import (
     Configure,
     MeasureRates,
     MoveJoints,
-    PlanningRequest,
     Request,
     ShowPictures,
     SwitchControllers,

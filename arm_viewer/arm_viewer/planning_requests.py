@@ -1,0 +1,70 @@
+"""Requests from the page that concern motion planning: frozen data, as in `requests`."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from arm_node.rigid_transform import RigidTransform
+
+
+@dataclass(frozen=True, slots=True)
+class SetGoal:
+    """Choose where a group is to go.
+
+    Attributes:
+        namespace: namespace of the move_group.
+        group: name of the group.
+        positions: positions in rad or m, by joint; joints without one stay where they are.
+    """
+
+    namespace: str
+    group: str
+    positions: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class DragTip:
+    """Choose where the tip of a group is to go.
+
+    Attributes:
+        namespace: namespace of the move_group.
+        group: name of the group.
+        pose: pose of the group's tip in the frame of the robot's root link.
+    """
+
+    namespace: str
+    group: str
+    pose: RigidTransform
+
+
+@dataclass(frozen=True, slots=True)
+class PlanMotion:
+    """Plan to the goal.
+
+    Attributes:
+        namespace: namespace of the move_group.
+        velocity: fraction of the velocity limits.
+        acceleration: fraction of the acceleration limits.
+        executes: whether the robot moves as soon as there is a plan.
+    """
+
+    namespace: str
+    velocity: float
+    acceleration: float
+    executes: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ExecutePlan:
+    """Execute the latest plan of this page."""
+
+    namespace: str
+
+
+@dataclass(frozen=True, slots=True)
+class StopMotion:
+    """Stop planning and whatever motion the move_group executes."""
+
+    namespace: str
+
+
+PlanningRequest = SetGoal | DragTip | PlanMotion | ExecutePlan | StopMotion
