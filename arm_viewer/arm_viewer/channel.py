@@ -13,7 +13,7 @@ from typing import Any
 from websockets.asyncio.server import ServerConnection, broadcast
 from websockets.protocol import State
 
-from arm_viewer.errors import MessageError
+from arm_viewer.errors import BrowserMessageError
 
 PATH = "/channel"
 MAX_LENGTH = 65536
@@ -43,11 +43,11 @@ class Message:
         """Return a text.
 
         Raises:
-            MessageError: the field is missing, not a text, or too long.
+            BrowserMessageError: the field is missing, not a text, or too long.
         """
         value = self._fields.get(name)
         if not isinstance(value, str) or len(value) > MAX_TEXT_LENGTH:
-            raise MessageError(
+            raise BrowserMessageError(
                 f"'{name}' of '{self.kind}' is not a text of at most {MAX_TEXT_LENGTH} characters"
             )
         return value
@@ -56,7 +56,7 @@ class Message:
         """Return a finite number.
 
         Raises:
-            MessageError: the field is missing or not a finite number.
+            BrowserMessageError: the field is missing or not a finite number.
         """
         value = self._fields.get(name)
         try:
@@ -64,18 +64,18 @@ class Message:
         except (TypeError, ValueError, OverflowError):
             number = math.nan
         if isinstance(value, str) or not math.isfinite(number):
-            raise MessageError(f"'{name}' of '{self.kind}' is not a finite number")
+            raise BrowserMessageError(f"'{name}' of '{self.kind}' is not a finite number")
         return number
 
     def flag(self, name: str) -> bool:
         """Return true or false.
 
         Raises:
-            MessageError: the field is missing or neither.
+            BrowserMessageError: the field is missing or neither.
         """
         value = self._fields.get(name)
         if not isinstance(value, bool):
-            raise MessageError(f"'{name}' of '{self.kind}' is neither true nor false")
+            raise BrowserMessageError(f"'{name}' of '{self.kind}' is neither true nor false")
         return value
 
 
@@ -96,7 +96,7 @@ class Browser:
 
 
 Handler = Callable[[Message, Browser], None]
-"""Serves a message in viser's event loop. A MessageError is the sentence that the browser gets."""
+"""Serves a message in viser's event loop. A BrowserMessageError is the sentence that the browser gets."""
 
 
 class Channel:
@@ -162,9 +162,9 @@ class Channel:
             kind = fields["kind"]
             handler = self._handlers.get(kind)
             if handler is None:
-                raise MessageError(f"the page does not serve '{kind[:MAX_TEXT_LENGTH]}'")
+                raise BrowserMessageError(f"the page does not serve '{kind[:MAX_TEXT_LENGTH]}'")
             handler(Message(kind, fields), browser)
-        except MessageError as error:
+        except BrowserMessageError as error:
             _refuse(browser, fields, str(error))
         except Exception:
             # The message's top-level handler: one that fails must not end the browser's connection.
@@ -186,13 +186,15 @@ def _refuse(browser: Browser, fields: Mapping[str, Any], problem: str) -> None:
 
 def _decoded(frame: str | bytes) -> dict[str, Any]:
     if len(frame) > MAX_LENGTH:
-        raise MessageError(f"the message has {len(frame)} characters; at most {MAX_LENGTH} may be")
+        raise BrowserMessageError(
+            f"the message has {len(frame)} characters; at most {MAX_LENGTH} may be"
+        )
     try:
         fields = json.loads(frame)
     except (ValueError, RecursionError):
-        raise MessageError("the message is not JSON") from None
+        raise BrowserMessageError("the message is not JSON") from None
     if not isinstance(fields, dict) or not isinstance(fields.get("kind"), str):
-        raise MessageError("the message is not a JSON object with a 'kind'")
+        raise BrowserMessageError("the message is not a JSON object with a 'kind'")
     return fields
 
 

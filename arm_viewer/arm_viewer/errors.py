@@ -1,10 +1,10 @@
 """The errors of this package; each message says what is wrong, where, and what exists.
 
 ViewerError
-├── ConfigError   a file is not an RViz configuration
-├── MessageError  a browser sent something that the page cannot serve
-├── PageError     the page cannot be served: the port is taken or invalid
-└── PictureError  an image message cannot be drawn
+├── BrowserMessageError  a browser sent something that the page cannot serve
+├── ConfigError          a file is not an RViz configuration
+├── PageError            the page cannot be served: the port is taken or invalid
+└── PictureError         an image message cannot be drawn
 """
 
 
@@ -16,7 +16,7 @@ class ConfigError(ViewerError):
     """A file is not an RViz configuration, or cannot be read; the message names it."""
 
 
-class MessageError(ViewerError):
+class BrowserMessageError(ViewerError):
     """A message from a browser cannot be served; the sentence is shown in that browser."""
 
 

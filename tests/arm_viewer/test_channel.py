@@ -9,7 +9,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from arm_viewer.channel import MAX_UNSENT_BYTES, PATH
-from arm_viewer.errors import MessageError
+from arm_viewer.errors import BrowserMessageError
 from arm_viewer.page_server import HOST, page_server
 
 TIMEOUT_S = 30.0
@@ -141,7 +141,7 @@ def test_a_handler_that_fails_ends_no_connection(server, join, caplog):
 
 def test_a_handlers_own_sentence_reaches_the_browser(server, join):
     def refuse(message, browser):
-        raise MessageError("there is no simulation")
+        raise BrowserMessageError("there is no simulation")
 
     server.channel.on("pause", refuse)
     answer = ask(join(), kind="pause", number=3)
