@@ -96,7 +96,7 @@ class Browser:
 
 
 Handler = Callable[[Message, Browser], None]
-"""Serves a message in viser's event loop. A BrowserMessageError is the sentence that the browser gets."""
+"""Serves a message in viser's event loop; a BrowserMessageError's sentence goes to the browser."""
 
 
 class Channel:
