@@ -19,7 +19,7 @@ REQUIREMENTS = [
     "viser>=1.1,<2",
     "websockets>=14",
 ]
-FRONT = ["*.js", "*.css", "*.svg"]
+FRONT = ["*.js", "*.css", "*.html", "*.svg"]
 DATA_FOLDERS = ["launch"]
 DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
 

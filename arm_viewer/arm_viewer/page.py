@@ -15,7 +15,6 @@ from viser import GuiApi, GuiTabHandle
 from arm_viewer.page_look import LEFT_PANEL_WIDTH_PX, apply_look
 from arm_viewer.page_server import PageServer
 from arm_viewer.panels.camera_panel import CameraPanel
-from arm_viewer.panels.clock_panel import ClockPanel
 from arm_viewer.panels.config_panel import ConfigPanel
 from arm_viewer.panels.controller_panel import ControllerPanel
 from arm_viewer.panels.graph_panel import GraphPanel, TopicPanel
@@ -25,6 +24,7 @@ from arm_viewer.panels.planning_panel import PlanningPanel
 from arm_viewer.panels.plot_panel import PlotPanel
 from arm_viewer.panels.robot_panel import RobotPanel
 from arm_viewer.panels.status_panel import StatusPanel
+from arm_viewer.panels.time_bar import TimeBar
 from arm_viewer.requests import Send, Watch
 from arm_viewer.rviz_config import PageConfig
 from arm_viewer.scene.first_view import FirstView
@@ -75,13 +75,15 @@ async def _build(server: PageServer, send: Send, config: PageConfig | None) -> t
     frames = Frames(server.scene, poses)
     status = StatusPanel()
     status.build(gui)
+    bar = TimeBar(server.channel, send)
+    bar.build(gui)
     joints = JointPanel(send)
     server.channel.on(TYPED_NUMBER, typed_number_handler(joints.take_typed))
     view = FirstView(server)
     robots = RobotPanel(server.scene, frames, poses, view)
     main = {
         "Robot": (joints, robots, ConfigPanel(server, robots, view, config)),
-        "Control": (ClockPanel(), ControllerPanel(send)),
+        "Control": (ControllerPanel(send),),
         "System": (GraphPanel(), TopicPanel(send)),
     }
 
@@ -99,6 +101,7 @@ async def _build(server: PageServer, send: Send, config: PageConfig | None) -> t
     planning.build(gui)
     return (
         status,
+        bar,
         *_build_tabs(main, gui, tabs.add_tab),
         *_build_tabs(cameras, gui, above.add_tab),
         *_build_tabs(plots, gui, below.add_tab),

@@ -262,10 +262,14 @@ SCRIPTS = (
     "poses.js",
     "typed_numbers.js",
     "quiet.js",
+    "time_bar.js",
+    "keys.js",
 )
+STYLES = ("page.css", "time_bar.css")
+PARTS = ("time_bar.html",)
 _ICON = re.compile(r'<link\s+rel="icon"\s[^>]*>', re.DOTALL)
 _TITLE = re.compile(r"<title>[^<]*</title>")
-_HEAD_END = "</head>"
+_HEAD_END, _BODY = "</head>", "<body>"
 
 
 @cache
@@ -277,12 +281,14 @@ def served_page(html: str) -> str:
     """
     icon = f'<link rel="icon" href="data:image/svg+xml,{quote(_read_asset("icon.svg"))}" />'
     scripts = "".join(f"<script>{_read_asset(name)}</script>" for name in SCRIPTS)
-    own = f"<style>{_read_asset('page.css')}</style>{scripts}"
+    styles = "".join(f"<style>{_read_asset(name)}</style>" for name in STYLES)
+    parts = "".join(_read_asset(name) for name in PARTS)
     # A function, because `sub` would interpret backslashes in a replacement string.
     html = _ICON.sub(lambda _: icon, html, count=1)
     html = _TITLE.sub(lambda _: f"<title>{TITLE}</title>", html, count=1)
     head, end, rest = html.partition(_HEAD_END)
-    return f"{head}{own}{end}{rest}"
+    before, body, after = rest.partition(_BODY)
+    return f"{head}{styles}{scripts}{end}{before}{body}{parts}{after}"
 
 
 def _read_asset(name: str) -> str:

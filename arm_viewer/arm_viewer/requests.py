@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 
 from arm_viewer.planning_requests import PlanningRequest
 
@@ -68,6 +69,62 @@ class Watch:
     wanted: bool
 
 
+@dataclass(frozen=True, slots=True)
+class SetPlaying:
+    """Let simulation time go on, or pause it."""
+
+    playing: bool
+
+
+@dataclass(frozen=True, slots=True)
+class StepRun:
+    """Advance a paused simulation by control periods."""
+
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class SetSpeed:
+    """Set the wanted ratio of simulation time to wall time; 0 is as fast as possible."""
+
+    factor: float
+
+
+@dataclass(frozen=True, slots=True)
+class ResetRun:
+    """Return everything in the simulation to its start.
+
+    Attributes:
+        keeps_clock: whether simulation time goes on instead of starting at zero.
+    """
+
+    keeps_clock: bool
+
+
+class SnapshotDeed(Enum):
+    """What may be done with a snapshot of the simulation."""
+
+    SAVE = "save"
+    RESTORE = "restore"
+    REMOVE = "remove"
+
+
+@dataclass(frozen=True, slots=True)
+class UseSnapshot:
+    """Save, restore or remove a snapshot of the simulation by its name."""
+
+    deed: SnapshotDeed
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class SetEmergencyStop:
+    """Stop every robot at once, or release the stop."""
+
+    engaged: bool
+
+
+RunRequest = SetPlaying | StepRun | SetSpeed | ResetRun | UseSnapshot
 Request = (
     Watch
     | ShowPictures
@@ -76,6 +133,8 @@ Request = (
     | Configure
     | MeasureRates
     | PlanningRequest
+    | RunRequest
+    | SetEmergencyStop
 )
 Send = Callable[[Request], None]
 """Passes a request to the ROS thread without blocking; any thread may call it."""

@@ -173,12 +173,58 @@ class SimulationTime:
         lag_s: how far simulation time fell behind wall time within `measured_s`, at least 0.
         measured_s: length of the measurement in wall time: ten seconds, less at first and after a
             pause.
+        received_s: when the last message of /clock arrived.
     """
 
     time_s: float
     factor: float
     lag_s: float
     measured_s: float
+    received_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class NamedSnapshot:
+    """A saved moment of the simulation, as the simulation lists it."""
+
+    name: str
+    description: str
+
+
+@dataclass(frozen=True, slots=True)
+class RunStatus:
+    """What the simulation says about its run.
+
+    Attributes:
+        state: "playing", "paused", "stopped", "quitting", "no world" or "loading a world".
+        speed: the wanted ratio of simulation time to wall time, 0 for as fast as possible; NaN
+            while it is unknown.
+        snapshots: its snapshots with names.
+    """
+
+    state: str
+    speed: float
+    snapshots: tuple[NamedSnapshot, ...]
+
+    @property
+    def is_playing(self) -> bool:
+        """Whether simulation time goes on."""
+        return self.state == "playing"
+
+
+@dataclass(frozen=True, slots=True)
+class ControlAnswer:
+    """What became of the user's last request to the simulation or to the emergency stop.
+
+    Attributes:
+        number: counts the answers.
+        text: a sentence for the user; empty if what happened shows by itself.
+        is_done: whether it was done.
+    """
+
+    number: int
+    text: str
+    is_done: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,6 +278,11 @@ class Snapshot:
     """The last commands to active controllers, by namespace and interface such as "j0/position"."""
     time: SimulationTime | None = None
     """None if /clock has no publisher."""
+    run: RunStatus | None = None
+    """None if no simulation answers."""
+    stops: Mapping[str, bool] = field(default_factory=lambda: MappingProxyType({}))
+    """Whether the emergency stop is engaged, by the namespace that offers one."""
+    control_answer: ControlAnswer = ControlAnswer(0, "", True)
     topics: tuple[Topic, ...] = ()
     nodes: tuple[NodeTopics, ...] = ()
     planning: "Mapping[str, PlanningView]" = field(default_factory=lambda: MappingProxyType({}))

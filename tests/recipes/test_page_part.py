@@ -139,7 +139,7 @@ def test_a_part_of_the_page_is_added_through_the_files_of_its_recipe(tmp_path):
             "from arm_viewer.panels.battery_panel import BatteryPanel\n"
             "from arm_viewer.panels.camera_panel",
         ),
-        ('"Control": (ClockPanel()', '"Control": (BatteryPanel(), ClockPanel()'),
+        ('"Control": (ControllerPanel(send),', '"Control": (BatteryPanel(), ControllerPanel(send)'),
     )
 
     assert checkout.run(SCRIPT) == "shown\n"

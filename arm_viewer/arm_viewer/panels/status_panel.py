@@ -14,7 +14,7 @@ SILENT_S = 2.0
 WAITING = "Waiting for a robot on /robot_description"
 GONE = "The simulation has ended; the page continues when it restarts"
 LOST = "{topic} is no longer published; the page continues when it is"
-SILENT = "Nothing on {topic} for {silence:.0f} s: the simulation is paused or hangs"
+SILENT = "Nothing on {topic} for {silence:.0f} s: what is shown of its joints is old"
 
 
 def status_message(snapshot: Snapshot) -> str:
@@ -24,6 +24,9 @@ def status_message(snapshot: Snapshot) -> str:
     for topic in sorted(snapshot.lost - snapshot.descriptions.keys()):
         if f"{topic.rpartition('/')[0]}/robot_description" in snapshot.descriptions:
             return LOST.format(topic=topic)
+    if snapshot.run is not None and not snapshot.run.is_playing:
+        # The time bar says so.
+        return ""
     for topic, states in sorted(snapshot.joint_states.items()):
         silence_s = snapshot.made_s - states.received_s
         if silence_s > SILENT_S:

@@ -18,8 +18,14 @@ from arm_viewer.requests import (
     MeasureRates,
     MoveJoints,
     Request,
+    ResetRun,
+    SetEmergencyStop,
+    SetPlaying,
+    SetSpeed,
     ShowPictures,
+    StepRun,
     SwitchControllers,
+    UseSnapshot,
     Watch,
 )
 from arm_viewer.ros.camera_observer import CameraObserver, ImageObserver
@@ -33,6 +39,9 @@ from arm_viewer.ros.marker_observer import MarkerObserver
 from arm_viewer.ros.observer import Observer
 from arm_viewer.ros.planning_observer import PlanningObserver
 from arm_viewer.ros.robot_observer import DescriptionObserver, TransformObserver
+from arm_viewer.ros.run_commander import ControlAnswers, RunCommander
+from arm_viewer.ros.run_observer import RunObserver
+from arm_viewer.ros.stop_observer import StopObserver
 from arm_viewer.snapshot import ListedController, Snapshot
 
 TICK_S = 1.0 / 30.0
@@ -74,6 +83,10 @@ class Viewer(Node):
         self._commander = JointCommander(self, self.latest)
         self._source = JointStateSource(self, self.latest) if displays else None
         self._simulation_clock = ClockObserver(self, polled)
+        self._answers = ControlAnswers()
+        self._run = RunObserver(self)
+        self._run_commander = RunCommander(self, self._answers, self._run.ask_again)
+        self._stops = StopObserver(self, polled, self._answers)
         self._topics = TopicObserver(self, polled)
         self._nodes = NodeObserver(self)
         self._planning = PlanningObserver(self, polled, self.latest)
@@ -90,6 +103,9 @@ class Viewer(Node):
             self._commands,
             self._commander,
             self._simulation_clock,
+            self._run,
+            self._run_commander,
+            self._stops,
             self._topics,
             self._nodes,
             self._planning,
@@ -155,6 +171,9 @@ class Viewer(Node):
             refusal=self._managers.refusal,
             commands=self._commands.commands,
             time=self._simulation_clock.time,
+            run=self._run.status,
+            stops=self._stops.stops,
+            control_answer=self._answers.last,
             topics=self._topics.topics,
             nodes=self._nodes.nodes,
             planning=self._planning.views,
@@ -181,6 +200,10 @@ class Viewer(Node):
                     self._managers.serve(request)
                 case MeasureRates():
                     self._topics.measure(request.wanted)
+                case SetEmergencyStop():
+                    self._stops.serve(request)
+                case SetPlaying() | StepRun() | SetSpeed() | ResetRun() | UseSnapshot():
+                    self._run_commander.serve(request)
                 case _ if isinstance(request, PlanningRequest):
                     self._planning.serve(request)
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from arm_viewer.panels.status_panel import GONE, WAITING, status_message
-from arm_viewer.snapshot import Description, JointStates, Snapshot, Topic
+from arm_viewer.snapshot import Description, JointStates, RunStatus, Snapshot, Topic
 
 DESCRIPTIONS = MappingProxyType({"/robot_description": Description("/robot_description", "", None)})
 
@@ -40,3 +40,9 @@ def test_joint_states_that_are_no_longer_published_are_named():
 
 def test_a_present_but_silent_simulation_is_distinguished():
     assert "/joint_states for 10 s" in status_message(snapshot(90.0, 1))
+
+
+def test_a_paused_simulation_is_silent_and_nothing_is_wrong():
+    paused = replace(snapshot(90.0, 1), run=RunStatus("paused", 1.0, ()))
+    assert status_message(paused) == ""
+    assert status_message(replace(paused, run=RunStatus("playing", 1.0, ())))

@@ -147,10 +147,15 @@ def simulation(launch_for_file):
 
 
 @pytest.fixture(scope="module")
-def page_url(launch_for_file) -> str:
-    """Return the address of a page, in a process of its own."""
-    launched = launch_for_file("arm_viewer", "viewer.launch.py", "viewer_port:=0")
-    line = launched.wait_for_line("the page is at http://")
+def page_program(launch_for_file):
+    """Return a page, in a process of its own."""
+    return launch_for_file("arm_viewer", "viewer.launch.py", "viewer_port:=0")
+
+
+@pytest.fixture(scope="module")
+def page_url(page_program) -> str:
+    """Return the address of the page."""
+    line = page_program.wait_for_line("the page is at http://")
     found = re.search(r"http://127\.0\.0\.1:[1-9]\d*", line)
     assert found is not None, line
     return found[0]

@@ -1,0 +1,314 @@
+"""The bar of time and emergency stop in a real browser, beside a real launch: one for the file."""
+
+import re
+import time
+
+import pytest
+
+pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+
+PLAYING, PAUSED = 1, 2
+PERIOD_S = 0.01
+TOLERANCE_S = 0.03
+"""The last /clock before a pause may arrive after the news of the pause."""
+TIMEOUT_MS = 120_000
+DESK, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
+FEW_FRAMES = """
+  const frame = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (draw) => setTimeout(() => frame(draw), 1000);
+"""
+"""The bar is watched and not the 3D view, which takes a second a frame without a graphics card."""
+SAID = """
+  window.said = [];
+  addEventListener("DOMContentLoaded", () => {
+    const message = document.getElementById("arm-message");
+    new MutationObserver(() => window.said.push(message.textContent))
+      .observe(message, { childList: true, characterData: true, subtree: true });
+  });
+"""
+"""Keeps the bar's sentences, which stand there for some seconds only."""
+
+
+@pytest.fixture(scope="module")
+def simulation(launch_for_file):
+    """Return a running simulation without cameras."""
+    launched = launch_for_file("camera:=none")
+    launched.wait_until_ready()
+    return launched
+
+
+@pytest.fixture(scope="module")
+def bar(browser, simulation, page_url):
+    """Return the bar of a page in a window of a desktop."""
+    yield from opened(browser, page_url, DESK)
+
+
+@pytest.fixture(scope="module")
+def phone(browser, simulation, page_url):
+    """Return the bar of the same page on a phone."""
+    yield from opened(browser, page_url, PHONE)
+
+
+class Bar:
+    """The bar as its user sees it."""
+
+    def __init__(self, page) -> None:
+        self.page = page
+
+    def button(self, name):
+        return self.page.get_by_role("button", name=name, exact=True)
+
+    def element(self, name):
+        return self.page.locator(f"#arm-{name}")
+
+    def until(self, condition, what):
+        """Wait until a function returns something; return it."""
+        deadline = time.monotonic() + TIMEOUT_MS / 1000.0
+        while not (found := condition()):
+            if time.monotonic() > deadline:
+                pytest.fail(f"not within {TIMEOUT_MS} ms: {what}")
+            self.page.wait_for_timeout(50)
+        return found
+
+    def shows(self, name, pattern):
+        """Wait until an element's text matches; return it."""
+
+        def found():
+            text = self.element(name).inner_text()
+            return text if re.search(pattern, text) else None
+
+        return self.until(found, f"{name} shows {pattern}")
+
+    def says(self, pattern):
+        """Wait until the bar says a sentence; return it, and forget what it said."""
+
+        def found():
+            said = self.page.evaluate("window.said")
+            return next((text for text in said if re.search(pattern, text)), None)
+
+        text = self.until(found, f"it says {pattern}")
+        self.page.evaluate("window.said.length = 0")
+        return text
+
+    @property
+    def time_s(self):
+        return float(self.element("clock").inner_text().removesuffix(" s"))
+
+    def shows_time(self, time_s):
+        self.until(lambda: abs(self.time_s - time_s) < TOLERANCE_S, f"{time_s} s")
+
+    def pause(self):
+        """Pause, whatever the state; return the time."""
+        if self.shows("state", "^(Playing|Paused)$") == "Playing":
+            self.button("Pause").click()
+        self.shows("state", "^Paused$")
+        return self.time_s
+
+
+def opened(browser, url, size):
+    page = browser.new_page(viewport=size)
+    page.set_default_timeout(TIMEOUT_MS)
+    page.add_init_script(FEW_FRAMES)
+    page.add_init_script(SAID)
+    errors = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(url)
+    page.get_by_role("tab", name="Robot").wait_for(state="attached")
+    yield Bar(page)
+    page.close()
+    assert errors == []
+
+
+@pytest.fixture
+def state(client):
+    """Return a function that asks the simulation for its state."""
+    from simulation_interfaces.srv import GetSimulationState
+
+    def ask():
+        request = GetSimulationState.Request()
+        return client.call(GetSimulationState, "/get_simulation_state", request).state.state
+
+    return ask
+
+
+@pytest.fixture
+def stopped(client):
+    """Collect what /emergency_stop/active says."""
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from std_msgs.msg import Bool
+
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    return client.subscribe(Bool, "/emergency_stop/active", latched)
+
+
+def test_time_is_paused_stepped_and_goes_on(bar, state):
+    bar.shows("factor", "^\u00d7[0-9]")
+    before_s = bar.pause()
+    assert state() == PAUSED
+    assert bar.element("factor").inner_text() == ""
+    assert bar.element("lag").inner_text() == ""
+    bar.button("Step once").click()
+    bar.until(lambda: bar.time_s > before_s, "a step")
+    for name, count in (("Step 10 times", 10), ("Step 100 times", 100)):
+        before_s = bar.time_s
+        bar.button(name).click()
+        bar.shows_time(before_s + count * PERIOD_S)
+    bar.button("Play").click()
+    bar.shows("state", "^Playing$")
+    assert state() == PLAYING
+    bar.page.locator("[data-steps='1'][title^='Pause first']").wait_for()
+
+
+def test_the_speed_is_chosen(bar, client):
+    from rcl_interfaces.srv import GetParameters
+
+    def speed():
+        request = GetParameters.Request(names=["real_time_factor"])
+        answer = client.call(GetParameters, "/arm_gazebo/get_parameters", request)
+        return answer.values[0].double_value
+
+    bar.element("speed").select_option(label="0.5\u00d7")
+    client.wait_until(lambda: speed() == 0.5, "the simulation's speed")
+    bar.shows("factor", "^\u00d70[.][45]")
+    bar.element("speed").select_option(label="1\u00d7")
+    client.wait_until(lambda: speed() == 1.0, "real time")
+    assert speed() == 1.0
+
+
+def test_a_snapshot_is_saved_listed_restored_and_removed(bar):
+    paused_s = bar.pause()
+    bar.button("Snapshots").click()
+    bar.element("name").fill("before")
+    bar.button("Save").click()
+    saved_s = float(re.search("^Saved 'before': (.*) s in", bar.says("^Saved"))[1])
+    assert saved_s == pytest.approx(paused_s, abs=TOLERANCE_S)
+    bar.page.keyboard.press("Escape")
+    bar.button("Step 100 times").click()
+    bar.shows_time(saved_s + 1.0)
+    bar.button("Snapshots").click()
+    bar.button("Restore before").click()
+    bar.shows_time(saved_s)
+    bar.button("Snapshots").click()
+    bar.button("Remove before").click()
+    bar.element("none-saved").wait_for()
+    bar.page.keyboard.press("Escape")
+
+
+def test_a_reset_keeps_the_clock_or_sets_it_to_zero(bar):
+    before_s = bar.pause()
+    bar.button("Reset").click()
+    bar.page.get_by_role("menuitem", name="keep the clock").click()
+    bar.says("the clock goes on")
+    assert bar.time_s == pytest.approx(before_s, abs=TOLERANCE_S)
+    bar.button("Reset").click()
+    bar.page.get_by_role("menuitem", name="clock to zero").click()
+    bar.shows_time(0.0)
+    assert bar.element("state").inner_text() == "Paused"
+
+
+def test_the_emergency_stop_is_engaged_at_once_and_released_by_two_clicks(bar, stopped):
+    stopped.wait_until(lambda m: m and not m[-1].data, "no stop")
+    bar.button("Emergency stop").click()
+    bar.button("Stopped").wait_for()
+    stopped.wait_until(lambda m: m[-1].data, "the stop")
+    bar.says("holds until it is released")
+    bar.button("Release stop").click()
+    bar.button("Confirm release").wait_for()
+    assert stopped.messages[-1].data
+    bar.button("Confirm release").click()
+    bar.button("Emergency stop").wait_for()
+    stopped.wait_until(lambda m: not m[-1].data, "the release")
+    assert not bar.element("release").is_visible()
+
+
+def test_a_stop_from_elsewhere_is_shown(bar, client):
+    from std_srvs.srv import SetBool
+
+    client.call(SetBool, "/emergency_stop", SetBool.Request(data=True))
+    bar.button("Stopped").wait_for()
+    assert bar.button("Release stop").is_visible()
+    client.call(SetBool, "/emergency_stop", SetBool.Request(data=False))
+    bar.button("Emergency stop").wait_for()
+
+
+def test_keys_act_but_not_while_one_types(bar, stopped):
+    time_s = bar.pause()
+    bar.page.keyboard.press(".")
+    bar.until(lambda: bar.time_s > time_s, "a step")
+    bar.page.keyboard.press("Shift+ArrowRight")
+    bar.shows_time(time_s + 11 * PERIOD_S)
+    bar.button("Snapshots").click()
+    bar.element("name").press_sequentially("a . r")
+    assert bar.element("name").input_value() == "a . r"
+    assert bar.element("state").inner_text() == "Paused"
+    bar.page.keyboard.press("Escape")
+    bar.element("snapshot-menu").wait_for(state="hidden")
+    bar.page.keyboard.press("?")
+    bar.page.get_by_text("reset, and keep the clock").wait_for()
+    bar.page.keyboard.press("Escape")
+    bar.element("keys").wait_for(state="hidden")
+    # So far the key only closed what lay above the page.
+    stopped.wait_until(lambda m: m and not m[-1].data, "no stop")
+    bar.page.keyboard.press("Space")
+    bar.shows("state", "^Playing$")
+    bar.page.keyboard.press("Escape")
+    bar.button("Stopped").wait_for()
+    bar.button("Release stop").click()
+    bar.button("Confirm release").click()
+    bar.button("Emergency stop").wait_for()
+    assert bar.time_s > time_s + 11 * PERIOD_S
+
+
+def test_all_of_it_is_in_the_command_palette(bar):
+    bar.pause()
+    bar.page.keyboard.press("Control+k")
+    search = bar.page.get_by_placeholder("Search commands...")
+    search.fill("pause or play")
+    bar.page.locator(".mantine-Spotlight-action", has_text="Pause or play").wait_for()
+    search.press("Enter")
+    assert bar.shows("state", "^Playing$") == "Playing"
+
+
+def test_on_a_phone_the_stop_is_under_the_thumb_and_the_bar_has_two_lines(phone):
+    bar = phone.page.locator("#arm-bar").bounding_box()
+    assert bar["height"] < 100
+    place = phone.button("Emergency stop").bounding_box()
+    assert place["y"] + place["height"] > PHONE["height"] - 20
+    assert place["width"] > 300
+    assert place["height"] > 44
+    for name in ("play", "reset", "snapshots", "help"):
+        inside = phone.element(name).bounding_box()
+        assert inside["x"] + inside["width"] <= PHONE["width"]
+        assert inside["y"] + inside["height"] <= bar["height"]
+    phone.pause()
+    phone.button("Emergency stop").click()
+    phone.button("Stopped").wait_for()
+    phone.button("Release stop").click()
+    phone.button("Confirm release").click()
+    phone.button("Emergency stop").wait_for()
+    phone.button("Play").click()
+    assert phone.shows("state", "^Playing$") == "Playing"
+
+
+def test_without_a_simulation_the_bar_says_why_it_is_grey(bar, simulation, launch_for_file):
+    assert simulation.stop() == 0, simulation.output
+    bar.shows("state", "^No simulation$")
+    bar.page.locator("#arm-play[title='No simulation: time cannot be paused']").wait_for()
+    bar.page.locator("#arm-stop[aria-disabled=true]").wait_for()
+    bar.element("play").click(force=True)
+    bar.says("^No simulation: time cannot be paused$")
+    launch_for_file("camera:=none").wait_until_ready()
+    bar.shows("state", "^Playing$")
+    assert bar.pause() > 0.0
+
+
+def test_the_bar_survives_the_end_of_the_pages_process(
+    bar, page_url, page_program, launch_for_file
+):
+    assert page_program.stop() == 0, page_program.output
+    bar.shows("state", "^No contact$")
+    bar.button("Emergency stop").click()
+    bar.says("^NOT STOPPED")
+    port = page_url.rpartition(":")[2]
+    launch_for_file("arm_viewer", "viewer.launch.py", f"viewer_port:={port}")
+    assert bar.shows("state", "^Paused$") == "Paused"
