@@ -105,17 +105,31 @@ class GoalSampler:
         for goal in self._alternatives(self.warn):
             judge = _Judge(self, goal)
             judges.append(judge)
-            mine: list[Array] = []
-            for candidate in self._candidates(goal, judge):
-                self.deadline.check(DOING)
-                if judge.accepts(candidate) and _is_new(candidate, mine):
-                    mine.append(candidate)
-                if len(mine) == MOST:
-                    break
-            found += mine
+            found += self._accepted(goal, judge)
         if not found:
             raise judges[0].error()
         return self._sorted(found)[:MOST]
+
+    def _accepted(self, goal: MotionConstraints, judge: "_Judge") -> list[Array]:
+        """Return up to `MOST` different states that a judge accepts, fewer if the time ends.
+
+        Raises:
+            PlanningError: the time ended before there was one, and why none was accepted so far.
+        """
+        found: list[Array] = []
+        try:
+            for candidate in self._candidates(goal, judge):
+                self.deadline.check(DOING)
+                if judge.accepts(candidate) and _is_new(candidate, found):
+                    found.append(candidate)
+                if len(found) == MOST:
+                    break
+        except PlanningError as error:
+            if error.code is not MoveItErrorCode.TIMED_OUT:
+                raise
+            if not found:
+                raise judge.error_at(error) from error
+        return found
 
     def _alternatives(self, warn: Callable[[str], None]) -> list[MotionConstraints]:
         goals = [snap_to_limits(goal, self.group, warn) for goal in self.goals if goal]
@@ -252,6 +266,13 @@ class _Judge:
                 MoveItErrorCode.GOAL_STATE_INVALID, "no state was found that satisfies the goal"
             )
         return self._errors[min(self._errors)]
+
+    def error_at(self, end: PlanningError) -> PlanningError:
+        """Return the reason so far and that the time ended, or only that."""
+        if not self._errors:
+            return end
+        reason = self._errors[min(self._errors)]
+        return PlanningError(reason.code, f"{reason}; the planning time ended with that")
 
     def _objection(self, q: Array) -> tuple[int, MoveItErrorCode, str] | None:
         """Return what speaks against a state; the number is smaller the farther it came."""

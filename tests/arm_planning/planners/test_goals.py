@@ -16,6 +16,7 @@ from arm_planning.constraints.constraints import (
 )
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.goals import GoalSampler
+from arm_planning.planners.problem import Deadline
 from arm_planning.scene.objects import PlacedShape
 
 MODEL = planar_model(3)
@@ -159,6 +160,15 @@ def test_a_goal_out_of_reach_says_so():
     code, sentence = code_of(sampler(goal))
     assert code == MoveItErrorCode.NO_IK_SOLUTION
     assert sentence == "goal is out of reach: the nearest pose is 12 mm away"
+
+
+def test_when_the_time_ends_first_a_goal_out_of_reach_still_says_so():
+    region = PlacedShape(Sphere(1e-3), RigidTransform((5.0, 0.0, 0.0)))
+    goal = MotionConstraints(positions=(PositionConstraint("l3", (0.0, 0.0, 0.0), (region,)),))
+    ticks = iter([0.0, 0.0, 2.0])
+    code, sentence = code_of(sampler(goal, deadline=Deadline(1.0, lambda: next(ticks))))
+    assert code == MoveItErrorCode.NO_IK_SOLUTION
+    assert sentence.startswith("goal is out of reach: the nearest pose is 12 mm away; the planning")
 
 
 def test_a_goal_that_violates_the_constraints_on_the_way_says_so():
