@@ -1,5 +1,15 @@
 """Robots of tests, as URDF texts, where it does not matter how each is written."""
 
+MYCOBOT_ARM = (
+    "link1_to_link2",
+    "link2_to_link3",
+    "link3_to_link4",
+    "link4_to_link5",
+    "link5_to_link6",
+    "link6_to_link6_flange",
+)
+"""The joints of the myCobot's arm, which the package mycobot_description describes."""
+
 
 def link(name: str, *inside: str, mass: float = 1.0) -> str:
     """A link that weighs something, unless `mass` is 0."""

@@ -2,6 +2,7 @@
 
 import pytest
 
+import launch_py.near_names
 from arm_node.names import MAX_LISTED, MAX_OFFERED, as_node_name, describe_known, listing
 
 MANY = [f"/topic_{n}" for n in range(MAX_OFFERED + 1)]
@@ -22,6 +23,7 @@ MANY = [f"/topic_{n}" for n in range(MAX_OFFERED + 1)]
 )
 def test_near_names_come_first_then_a_list_that_is_not_too_long(name, known, hint):
     assert describe_known(name, known, "it has") == hint
+    assert launch_py.near_names.describe_known(name, known, "it has") == hint
 
 
 def test_a_long_list_is_cut_short_and_an_empty_one_says_so():

@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from robots import MYCOBOT_ARM
 
 from arm_control.hardware.info import parse_hardware_info
 from arm_description import (
@@ -18,14 +19,6 @@ from arm_description import (
 from arm_gazebo.sensors.camera_reader import parse_cameras
 
 MODEL = "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro"
-ARM_JOINTS = (
-    "link1_to_link2",
-    "link2_to_link3",
-    "link3_to_link4",
-    "link4_to_link5",
-    "link5_to_link6",
-    "link6_to_link6_flange",
-)
 DRIVEN = "gripper_controller"
 FOLLOWERS = {
     "gripper_base_to_gripper_left2": 1.0,
@@ -87,7 +80,7 @@ def test_every_combination_of_choices_is_one_tree(prefix, use_gripper, add_world
         links.add("world")
     assert names(robot.links) == links
     assert robot.root == ("world" if add_world == "true" else f"{prefix}base_link")
-    joints = {*ARM_JOINTS, *((DRIVEN, *FOLLOWERS) if with_gripper else ())}
+    joints = {*MYCOBOT_ARM, *((DRIVEN, *FOLLOWERS) if with_gripper else ())}
     assert names(robot.movable_joints) == {prefixed(joint, prefix) for joint in joints}
 
 
@@ -135,7 +128,7 @@ def test_a_value_that_is_no_choice_is_refused_with_the_choices(argument, value, 
 @pytest.mark.parametrize(("positions", "flange"), FLANGE_AT.items())
 @pytest.mark.parametrize("prefix", ["", "left_"])
 def test_a_pose_means_the_same_as_in_the_original(positions, flange, prefix):
-    joints = dict(zip([prefixed(joint, prefix) for joint in ARM_JOINTS], positions, strict=True))
+    joints = dict(zip([prefixed(joint, prefix) for joint in MYCOBOT_ARM], positions, strict=True))
     poses = forward_kinematics(mycobot(add_world="false", prefix=prefix), joints)
 
     place, axis = flange
@@ -219,7 +212,7 @@ def test_ros2_control_commands_what_the_robot_has_and_only_that(use_gripper):
 
     gripper = ["left_" + DRIVEN] if use_gripper == "true" else []
     commanded = [joint.name for joint in component.joints if joint.command_interfaces]
-    assert commanded == [*(prefixed(joint, "left_") for joint in ARM_JOINTS), *gripper]
+    assert commanded == [*(prefixed(joint, "left_") for joint in MYCOBOT_ARM), *gripper]
     assert {joint.name for joint in component.joints} == names(parse_urdf(text).movable_joints)
     assert component.plugin == "gz_ros2_control/GazeboSimSystem"
     (mock,) = parse_hardware_info(expand())

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from robots import MYCOBOT_ARM
 
 from arm_gazebo.batch.choice import SERIAL_COPIES, make_copies
 from arm_gazebo.batch.copies import CommandBounds, Copies
@@ -13,15 +14,7 @@ from arm_gazebo.errors import BatchError
 from arm_sim import Simulation
 
 ARM = ("j0", "j1", "j2", "j3")
-MYCOBOT = (
-    "link1_to_link2",
-    "link2_to_link3",
-    "link3_to_link4",
-    "link4_to_link5",
-    "link5_to_link6",
-    "link6_to_link6_flange",
-    "gripper_controller",
-)
+MYCOBOT = (*MYCOBOT_ARM, "gripper_controller")
 CONTROLLER = """
 controller_manager:
   ros__parameters:

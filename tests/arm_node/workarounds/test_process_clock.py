@@ -9,23 +9,6 @@ from arm_node.workarounds.clocks import ProcessClock
 pytestmark = [pytest.mark.ros, pytest.mark.workaround("process_clock")]
 
 
-@pytest.fixture
-def node():
-    import rclpy
-    from rclpy.context import Context
-    from rclpy.node import Node
-    from rclpy.parameter import Parameter
-    from rclpy.signals import SignalHandlerOptions
-
-    context = Context()
-    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
-    overrides = [Parameter("use_sim_time", value=True)]
-    node = Node("simulated", context=context, parameter_overrides=overrides)
-    yield node
-    node.destroy_node()
-    context.try_shutdown()
-
-
 class Simulation:
     """A time that the test sets, and the clock of its process."""
 

@@ -10,23 +10,6 @@ A, B = ("a",), ("b",)
 
 
 @pytest.fixture
-def node():
-    import rclpy
-    from rclpy.context import Context
-    from rclpy.node import Node
-    from rclpy.parameter import Parameter
-    from rclpy.signals import SignalHandlerOptions
-
-    context = Context()
-    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
-    overrides = [Parameter("use_sim_time", value=True)]
-    node = Node("stamped", context=context, parameter_overrides=overrides)
-    yield node
-    node.destroy_node()
-    context.try_shutdown()
-
-
-@pytest.fixture
 def times(node):
     """Return the node's times after each of some messages (joints, stamp), all in ns."""
     stamp_clock = StampClock(node)

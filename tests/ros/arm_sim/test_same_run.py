@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from robots import MYCOBOT_ARM
 
 from arm_control.controllers.joint_trajectory import GoalRequest
 from arm_gazebo.recording.comparison import compare
@@ -21,14 +22,6 @@ from arm_sim import NAMED_ROBOTS, Goal, Simulation
 pytestmark = pytest.mark.ros
 
 ARM, GRIPPER = "arm_controller", "gripper_action_controller"
-JOINTS = (
-    "link1_to_link2",
-    "link2_to_link3",
-    "link3_to_link4",
-    "link4_to_link5",
-    "link5_to_link6",
-    "link6_to_link6_flange",
-)
 CAN = """<sdf version='1.9'><model name='can'><link name='body'>
 <inertial><mass>0.05</mass><inertia><ixx>1e-4</ixx><iyy>1e-4</iyy><izz>1e-4</izz></inertia></inertial>
 <collision name='shape'><geometry><cylinder><radius>0.03</radius><length>0.1</length></cylinder>
@@ -54,9 +47,9 @@ class User:
         from control_msgs.action import FollowJointTrajectory
         from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-        point = JointTrajectoryPoint(positions=[position] * len(JOINTS))
+        point = JointTrajectoryPoint(positions=[position] * len(MYCOBOT_ARM))
         point.time_from_start.sec = seconds
-        trajectory = JointTrajectory(joint_names=list(JOINTS), points=[point])
+        trajectory = JointTrajectory(joint_names=list(MYCOBOT_ARM), points=[point])
         goal = FollowJointTrajectory.Goal(trajectory=trajectory)
         action = f"/{ARM}/follow_joint_trajectory"
         return self._status_of(FollowJointTrajectory, action, goal, cancel)

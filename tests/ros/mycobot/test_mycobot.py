@@ -5,17 +5,10 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
+from robots import MYCOBOT_ARM
 
 pytestmark = pytest.mark.ros
 
-ARM_JOINTS = (
-    "link1_to_link2",
-    "link2_to_link3",
-    "link3_to_link4",
-    "link4_to_link5",
-    "link5_to_link6",
-    "link6_to_link6_flange",
-)
 TARGET = (1.345, -1.23, 0.264, -0.296, 0.389, -1.5)
 HOME = (0.0,) * 6
 FOLLOWERS = {
@@ -72,7 +65,7 @@ def trajectory(positions: tuple[float, ...], seconds: int, prefix: str) -> Any:
     point = JointTrajectoryPoint(positions=positions)
     point.time_from_start.sec = seconds
     return JointTrajectory(
-        joint_names=[prefixed(name, prefix) for name in ARM_JOINTS], points=[point]
+        joint_names=[prefixed(name, prefix) for name in MYCOBOT_ARM], points=[point]
     )
 
 
@@ -100,7 +93,7 @@ def test_arm_and_gripper_move_by_topic_and_by_actions(launch, client, result_of)
 
     publisher.publish(trajectory(TARGET, 1, "left_"))
     wait_for_pose(
-        states, {prefixed(n, "left_"): q for n, q in zip(ARM_JOINTS, TARGET, strict=True)}
+        states, {prefixed(n, "left_"): q for n, q in zip(MYCOBOT_ARM, TARGET, strict=True)}
     )
 
     follow = "/arm_controller/follow_joint_trajectory"
@@ -108,7 +101,7 @@ def test_arm_and_gripper_move_by_topic_and_by_actions(launch, client, result_of)
     followed = result_of(FollowJointTrajectory, follow, goal)
     assert followed.status == GoalStatus.STATUS_SUCCEEDED
     assert followed.result.error_code == FollowJointTrajectory.Result.SUCCESSFUL
-    wait_for_pose(states, {prefixed(name, "left_"): 0.0 for name in ARM_JOINTS})
+    wait_for_pose(states, {prefixed(name, "left_"): 0.0 for name in MYCOBOT_ARM})
 
     close = GripperCommand.Goal()
     close.command.position, close.command.max_effort = -0.7, 5.0
@@ -130,7 +123,7 @@ def test_a_copy_has_actions_and_controllers_of_its_own(launch, client, result_of
     launched.wait_until_ready()
     states = {name: client.subscribe(JointState, f"/{name}/joint_states") for name in (own, other)}
     target = trajectory(TARGET, 1, "")
-    target.joint_names = [f"{own}_{name}" for name in ARM_JOINTS]
+    target.joint_names = [f"{own}_{name}" for name in MYCOBOT_ARM]
     follow = f"/{own}/arm_controller/follow_joint_trajectory"
     followed = result_of(
         FollowJointTrajectory, follow, FollowJointTrajectory.Goal(trajectory=target)
@@ -169,7 +162,7 @@ def test_the_description_alone_shows_the_robot_without_gripper(launch, client):
     states = client.subscribe(JointState, "/joint_states").wait_for(1)
     frames = client.subscribe(TFMessage, "/tf").wait_for(1)
 
-    joints = {prefixed(name, "left_") for name in ARM_JOINTS}
+    joints = {prefixed(name, "left_") for name in MYCOBOT_ARM}
     assert set(states[0].name) == joints
     children = {transform.child_frame_id for transform in frames[0].transforms}
     assert children == {*(f"left_link{n}" for n in range(2, 7)), "left_link6_flange"}
@@ -202,7 +195,7 @@ def test_the_loop_tells_what_was_reached_and_stops_what_is_under_way(launch, cli
 
     loop.wait_for_line("Action servers connected!")
     loop.wait_for_line("Reached target position - Pausing")
-    wait_for_pose(states, dict(zip(ARM_JOINTS, TARGET, strict=True)), within_rad=0.05)
+    wait_for_pose(states, dict(zip(MYCOBOT_ARM, TARGET, strict=True)), within_rad=0.05)
     loop.wait_for_line("Closing gripper")
     wait_for_pose(states, {"gripper_controller": -0.7}, within_rad=0.02)
     loop.wait_for_line("Reached home position - Pausing")
