@@ -6,19 +6,19 @@ from contextlib import AbstractContextManager, contextmanager
 from itertools import count
 from typing import Any
 
-from arm_gazebo.faults.fault import Fault, FaultKind
+from arm_gazebo.faults.fault import Fault
 from arm_gazebo.faults.injector import FaultInjector
 from arm_gazebo.run.run import SimulationRun
 from arm_sim.cameras import Camera
 from arm_sim.controllers import ControllerHandle, Controllers
-from arm_sim.fault_log import FaultLog
 from arm_sim.faulty_link import FaultyLink, LinkFault
+from arm_sim.injected_faults import InjectedFaults
 
 TOLERANCE_S = 1e-9
 """Rounding error of a time that is a sum of periods."""
 
 
-class SimulationFaults:
+class SimulationFaults(InjectedFaults):
     """Faults of one simulation; each lasts as long as its `with` block. The simulation's thread.
 
     Attributes:
@@ -28,52 +28,11 @@ class SimulationFaults:
     def __init__(
         self, run: SimulationRun, controllers: Controllers, find_camera: Callable[[str], Camera]
     ) -> None:
-        self.log = FaultLog(lambda: run.physics.time_s)
+        super().__init__(lambda: run.physics.time_s)
         self._run = run
         self._controllers = controllers
         self._find_camera = find_camera
         self._injector = FaultInjector(run)
-
-    def joint_stalled(self, joint: str) -> AbstractContextManager[None]:
-        """Make a joint stick where it is, whatever its drive does."""
-        return self._injected(Fault(FaultKind.JOINT_STALLED, joint))
-
-    def sensor_frozen(self, name: str) -> AbstractContextManager[None]:
-        """Freeze readings at their present values.
-
-        Controllers and broadcasters see the frozen values; `sim.joints` shows the true states.
-
-        Args:
-            name: a channel such as j0/position; or a joint or sensor, for all of its channels.
-        """
-        return self._injected(Fault(FaultKind.SENSOR_FROZEN, name))
-
-    def sensor_noisy(
-        self, name: str, deviation: float, seed: int = 0
-    ) -> AbstractContextManager[None]:
-        """Add Gaussian noise to readings; see `sensor_frozen`.
-
-        Args:
-            name: as for `sensor_frozen`.
-            deviation: standard deviation, in the unit of the reading.
-            seed: of the noise.
-        """
-        return self._injected(Fault(FaultKind.SENSOR_NOISY, name, deviation, seed))
-
-    def sensor_nan(self, name: str) -> AbstractContextManager[None]:
-        """Make readings NaN; see `sensor_frozen`."""
-        return self._injected(Fault(FaultKind.SENSOR_NAN, name))
-
-    def controller_raises(self, name: str) -> AbstractContextManager[None]:
-        """Make a controller's updates raise: the manager deactivates it, or starts its fallback.
-
-        It stays inactive after the block.
-        """
-        return self._injected(Fault(FaultKind.CONTROLLER_RAISES, name))
-
-    def slow_tick(self, seconds: float) -> AbstractContextManager[None]:
-        """Make each control period take this many seconds of wall time longer."""
-        return self._injected(Fault(FaultKind.SLOW_TICK, amount=seconds))
 
     def messages_dropped(
         self, controller: str, fraction: float = 1.0, seed: int = 0

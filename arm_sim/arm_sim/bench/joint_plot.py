@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_sim.bench.history import QUANTITIES, StateHistory
-from arm_sim.fault_log import FaultSpan
+from arm_sim.injected_faults import FaultSpan
 
 Picture = NDArray[np.uint8]
 Colour = tuple[int, int, int]

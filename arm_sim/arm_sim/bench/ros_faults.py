@@ -17,13 +17,13 @@ from arm_gazebo.faults.fault import Fault, FaultKind
 from arm_sim.bench.processes import LoggedProcess
 from arm_sim.bench.ros_connection import RosConnection
 from arm_sim.errors import BenchError
-from arm_sim.fault_log import FaultLog
 from arm_sim.faulty_link import FaultyLink, LinkFault
+from arm_sim.injected_faults import InjectedFaults
 
 SIMULATION = "arm_gazebo"
 
 
-class RosFaults:
+class RosFaults(InjectedFaults):
     """Faults of a launch; each lasts as long as its `with` block. The test's thread.
 
     Attributes:
@@ -41,37 +41,11 @@ class RosFaults:
             launch: its process.
             now_s: returns the simulation time.
         """
-        self.log = FaultLog(now_s)
+        super().__init__(now_s)
         self.has_killed = False
         self._connection = connection
         self._launch = launch
-        self._injected: list[str] = []
-
-    def joint_stalled(self, joint: str) -> AbstractContextManager[None]:
-        """Make a joint stick where it is, whatever its drive does."""
-        return self._inject(FaultKind.JOINT_STALLED, joint)
-
-    def sensor_frozen(self, name: str) -> AbstractContextManager[None]:
-        """Freeze the readings of a joint, a sensor or one state interface."""
-        return self._inject(FaultKind.SENSOR_FROZEN, name)
-
-    def sensor_noisy(
-        self, name: str, deviation: float, seed: int = 0
-    ) -> AbstractContextManager[None]:
-        """Add Gaussian noise of this standard deviation to readings; see `sensor_frozen`."""
-        return self._inject(FaultKind.SENSOR_NOISY, name, deviation, seed)
-
-    def sensor_nan(self, name: str) -> AbstractContextManager[None]:
-        """Make readings NaN; see `sensor_frozen`."""
-        return self._inject(FaultKind.SENSOR_NAN, name)
-
-    def controller_raises(self, name: str) -> AbstractContextManager[None]:
-        """Make a controller's updates raise; it stays inactive after the block."""
-        return self._inject(FaultKind.CONTROLLER_RAISES, name)
-
-    def slow_tick(self, seconds: float) -> AbstractContextManager[None]:
-        """Make each control period take this many seconds of wall time longer."""
-        return self._inject(FaultKind.SLOW_TICK, "", seconds)
+        self._texts: list[str] = []
 
     @contextmanager
     def process_killed(self, name: str) -> Iterator[None]:
@@ -141,20 +115,18 @@ class RosFaults:
         return self._relay("doubled", topic, to, fault)
 
     @contextmanager
-    def _inject(
-        self, kind: FaultKind, target: str, amount: float = 0.0, seed: int = 0
-    ) -> Iterator[None]:
-        fault = Fault(kind, target, amount, seed)
-        words = [kind.value, target]
-        if amount:
-            words += [repr(amount), str(seed) if kind is FaultKind.SENSOR_NOISY else ""]
+    def _injected(self, fault: Fault) -> Iterator[None]:
+        words = [fault.kind.value, fault.target]
+        if fault.amount:
+            seed = str(fault.seed) if fault.kind is FaultKind.SENSOR_NOISY else ""
+            words += [repr(fault.amount), seed]
         text = " ".join(filter(None, words))
-        self._set_injected([*self._injected, text])
+        self._set_injected([*self._texts, text])
         with self.log.noted(str(fault)):
             try:
                 yield
             finally:
-                self._set_injected([other for other in self._injected if other != text])
+                self._set_injected([other for other in self._texts if other != text])
 
     def _set_injected(self, faults: list[str]) -> None:
         value = ParameterValue(type=ParameterType.PARAMETER_STRING_ARRAY, string_array_value=faults)
@@ -163,7 +135,7 @@ class RosFaults:
         (result,) = answer.results
         if not result.successful:
             raise BenchError(result.reason)
-        self._injected = faults
+        self._texts = faults
 
     def _pids(self, name: str) -> list[int]:
         processes = self._launch.descendants()

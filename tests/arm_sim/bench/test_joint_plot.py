@@ -8,7 +8,7 @@ import numpy as np
 
 from arm_sim.bench.history import ReferenceLine, StateHistory
 from arm_sim.bench.joint_plot import COLOURS, save_plot
-from arm_sim.fault_log import FaultSpan
+from arm_sim.injected_faults import FaultSpan
 
 
 def picture_of(history: StateHistory, path: Path, faults=()) -> np.ndarray:
