@@ -365,7 +365,7 @@ class Planner:
         own = [
             replace(
                 item,
-                request=replace(item.request, planner=_planner_of(item.request)),
+                request=replace(item.request, planner=planner_of(item.request)),
             )
             for item in items
         ]
@@ -508,7 +508,7 @@ class Planner:
             request.attempts,
         )
         try:
-            found = planner_for(_planner_of(request)).plan(problem)
+            found = planner_for(planner_of(request), request.parameters).plan(problem)
         except PlanningError as error:
             if error.code is MoveItErrorCode.START_STATE_IN_COLLISION:
                 check_start(checker, start)
@@ -549,7 +549,7 @@ def resting_positions(model: PlanningModel) -> dict[str, float]:
     }
 
 
-def _planner_of(request: PlanRequest) -> str:
+def planner_of(request: PlanRequest) -> str:
     """Return a planner's id without the group that RViz and MoveIt's clients put around it."""
     given, group = request.planner, request.group
     inner = given.removeprefix(f"{group}[").removesuffix("]")

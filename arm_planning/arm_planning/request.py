@@ -1,6 +1,7 @@
 """A request to plan a motion, and the answer."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from arm_planning.constraints.constraints import MotionConstraints
 from arm_planning.errors import MoveItErrorCode
@@ -24,6 +25,7 @@ class PlanRequest:
         velocity_scaling: fraction of the velocity limits to use, (0, 1].
         acceleration_scaling: likewise of the acceleration limits.
         seed: the same request, scene and seed give the same plan.
+        parameters: of the planner, as `planner_parameters` names them.
     """
 
     group: str
@@ -37,6 +39,7 @@ class PlanRequest:
     velocity_scaling: float = 1.0
     acceleration_scaling: float = 1.0
     seed: int = 0
+    parameters: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

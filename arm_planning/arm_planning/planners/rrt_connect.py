@@ -23,7 +23,11 @@ soon where there is room; shorter ones make shorter paths, and turn more corners
 
 
 def rrt_connect(
-    space: Space, start: Array, goals: Array, seed: Sequence[int]
+    space: Space,
+    start: Array,
+    goals: Array,
+    seed: Sequence[int],
+    reaches: Sequence[float] = REACHES,
 ) -> Iterator[Array | None]:
     """Search for a path, one iteration at each step of the iterator.
 
@@ -32,13 +36,14 @@ def rrt_connect(
         start: where the path begins, (n,).
         goals: where it may end, (g, n).
         seed: seed of the random numbers.
+        reaches: longest moves, in the joints' units, of iterations in turn.
 
     Yields:
         None after each iteration that found no path; then the path, (m, n), once.
     """
     from_start, from_goal = Tree(start[None, :]), Tree(goals)
     explorer, follower = from_start, from_goal
-    for sample, reach in zip(_samples(space, seed), cycle(REACHES), strict=False):
+    for sample, reach in zip(_samples(space, seed), cycle(reaches), strict=False):
         grown = _explore(space, explorer, sample, reach)
         if grown is not None:
             met = _follow(space, follower, explorer.state(grown), reach)

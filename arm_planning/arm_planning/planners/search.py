@@ -1,7 +1,7 @@
 """The suite's own planner: a straight path first, then RRT-Connect, shortcuts and a proof."""
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.mend import mend
 from arm_planning.planners.problem import PlanningProblem, path_length
-from arm_planning.planners.rrt_connect import rrt_connect
+from arm_planning.planners.rrt_connect import REACHES, rrt_connect
 from arm_planning.planners.shortcut import shorten
 from arm_planning.planners.space import Space, space_of
 from arm_planning.planners.straight import straight_to_any
@@ -29,7 +29,12 @@ class RrtConnectPlanner:
 
     Iterations are counted, never timed: a busy machine gives the same path later, or none. Of
     several attempts, those that finish in time count.
+
+    Attributes:
+        reaches: longest moves of a tree, in the joints' units, of iterations in turn.
     """
+
+    reaches: tuple[float, ...] = REACHES
 
     def plan(self, problem: PlanningProblem) -> Array:
         """Return a proved path, (m, n); see `PathPlanner`."""
@@ -53,7 +58,7 @@ class RrtConnectPlanner:
         space = space_of(problem, goals, is_proved=is_proved)
         has_path = False
         try:
-            for attempt, found in race(problem, space, goals):
+            for attempt, found in race(problem, space, goals, self.reaches):
                 path = shortened_and_proved(problem, space, found, attempt)
                 if path is not None:
                     has_path = True
@@ -116,7 +121,9 @@ def check_start_is_proved(problem: PlanningProblem) -> None:
         )
 
 
-def race(problem: PlanningProblem, space: Space, goals: Array) -> Iterator[tuple[int, Array]]:
+def race(
+    problem: PlanningProblem, space: Space, goals: Array, reaches: Sequence[float]
+) -> Iterator[tuple[int, Array]]:
     """Search with several streams of random numbers in turn; yield each path that is found.
 
     Yields:
@@ -127,7 +134,7 @@ def race(problem: PlanningProblem, space: Space, goals: Array) -> Iterator[tuple
         PlanningError: TIMED_OUT.
     """
     searches = {
-        attempt: rrt_connect(space, problem.start, goals, (problem.seed, attempt))
+        attempt: rrt_connect(space, problem.start, goals, (problem.seed, attempt), reaches)
         for attempt in range(problem.attempts)
     }
     iterations, last = 0, np.inf

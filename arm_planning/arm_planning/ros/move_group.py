@@ -24,6 +24,7 @@ from arm_planning.ros.goals import Turns
 from arm_planning.ros.motion_goals import PLANS, MotionGoals
 from arm_planning.ros.move_action import MoveActions
 from arm_planning.ros.plan_display import PlanDisplay
+from arm_planning.ros.planner_parameters import PlannerParameterServices
 from arm_planning.ros.planning_services import PlanningServices
 from arm_planning.ros.planning_session import PlanningSession
 from arm_planning.ros.robot_setup import PlanningSetup, values_below
@@ -70,6 +71,7 @@ class MoveGroup:
             SequenceServer(node, motions, limit),
             PlanningServices(node, session, display, limit),
             StateServices(node, session, limit),
+            PlannerParameterServices(node, session.parameters, setup.model.groups),
             GeometryFiles(node, setup.model, self.monitor),
         )
         self._semantic = node.create_publisher(String, "robot_description_semantic", LATCHED)

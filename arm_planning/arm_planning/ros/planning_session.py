@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 
 from moveit_msgs.msg import MotionPlanRequest, RobotState
@@ -10,12 +11,13 @@ from moveit_msgs.msg import PlanningScene as SceneMessage
 
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import PlanningError
-from arm_planning.planner import Planner
+from arm_planning.planner import Planner, planner_of
 from arm_planning.planners.problem import never
 from arm_planning.request import PlanRequest, PlanResponse
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert_constraints import ConstraintFrames, plan_request
 from arm_planning.ros.convert_scene import state_change_of
+from arm_planning.ros.planner_parameters import PlannerParameters
 from arm_planning.ros.robot_setup import PlanningSetup
 from arm_planning.ros.scene_monitor import SceneMonitor
 from arm_planning.scene.frames import LinkPoses, frame_pose
@@ -33,11 +35,13 @@ class PlanningSession:
     Attributes:
         model: the robot.
         monitor: the present scene.
+        parameters: what is set of the planners.
     """
 
     def __init__(self, setup: PlanningSetup, monitor: SceneMonitor) -> None:
         self.model: PlanningModel = setup.model
         self.monitor = monitor
+        self.parameters = PlannerParameters()
         self._setup = setup
         self._idle: list[Planner] = []
 
@@ -130,7 +134,9 @@ class PlanningSession:
         Raises:
             PlanningError: it names what does not exist.
         """
-        return plan_request(message, self._setup.seed, self.frames(scene), LOGGER.warning)
+        request = plan_request(message, self._setup.seed, self.frames(scene), LOGGER.warning)
+        parameters = self.parameters.of(planner_of(request), request.group)
+        return replace(request, parameters=parameters)
 
     def watch(
         self, trajectory: TimedTrajectory, planned_in: PlanningScene

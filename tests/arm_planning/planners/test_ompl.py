@@ -7,7 +7,7 @@ from planar_arm import PlanarArm, dense, planar_problem
 from arm_planning.constraints.constraints import JointConstraint, MotionConstraints
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.problem import Deadline
-from arm_planning.planners.registry import planner_for, planner_ids
+from arm_planning.planners.registry import planner_for, planner_ids, planner_parameters
 
 pytest.importorskip("ompl", reason="comes with the extra ompl")
 
@@ -61,3 +61,19 @@ def test_constraints_on_the_way_are_refused_with_the_planner_that_takes_them():
     path = MotionConstraints((JointConstraint("j0", 0.0, 3.0, 3.0),))
     with pytest.raises(PlanningError, match="takes no path constraints; the planner RRTConnect"):
         planner_for("RRT").plan(planar_problem(PlanarArm(), START, GOAL, path=path))
+
+
+@pytest.mark.parametrize("planner_id", ["RRT", "KPIECE1", "LBKPIECE1"])
+def test_a_planner_takes_the_parameters_that_it_is_said_to_have(planner_id):
+    values = {name: 0.4 for name in planner_parameters(planner_id)}
+    assert set(values) <= {"range", "goal_bias"}
+    problem = planar_problem(PlanarArm(POSTS), START, GOAL, seed=4)
+    path = planner_for(planner_id, values).plan(problem)
+    assert path[-1] == pytest.approx(np.array(GOAL))
+
+
+def test_a_range_acts():
+    arms = [PlanarArm(POSTS), PlanarArm(POSTS)]
+    for arm, reach in zip(arms, (0.05, 2.0), strict=True):
+        planner_for("RRT", {"range": reach}).plan(planar_problem(arm, START, GOAL, seed=4))
+    assert arms[0].checks > arms[1].checks

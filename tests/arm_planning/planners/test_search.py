@@ -17,7 +17,9 @@ from arm_planning.constraints.constraints import (
 )
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.problem import Deadline, path_length
+from arm_planning.planners.rrt_connect import rrt_connect
 from arm_planning.planners.search import RrtConnectPlanner
+from arm_planning.planners.space import space_of
 from arm_planning.scene.objects import PlacedShape
 
 POSTS = ((1.6, 0.9, 0.3), (1.6, -0.9, 0.3), (-0.5, 2.0, 0.4))
@@ -189,3 +191,14 @@ def test_whatever_path_comes_is_free(discs, seed):
         path = PLANNER.plan(problem)
         assert all(map(arm.is_free, dense(path)))
         assert (np.abs(path) <= 3.0).all()
+
+
+@pytest.mark.parametrize("reach", [0.3, 4.0])
+def test_no_move_of_a_tree_is_longer_than_its_reach(reach):
+    problem = planar_problem(PlanarArm(POSTS), START, GOAL)
+    goals = np.array([GOAL])
+    search = rrt_connect(space_of(problem, goals), np.array(START), goals, (1,), (reach,))
+    path = next(path for path in search if path is not None)
+    longest = np.linalg.norm(np.diff(path, axis=0), axis=1).max()
+    assert longest <= reach + 1e-9
+    assert longest > 0.3 - 1e-9

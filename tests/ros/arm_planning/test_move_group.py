@@ -16,6 +16,8 @@ SERVICES = {
     "/compute_fk": "moveit_msgs/srv/GetPositionFK",
     "/check_state_validity": "moveit_msgs/srv/GetStateValidity",
     "/query_planner_interface": "moveit_msgs/srv/QueryPlannerInterfaces",
+    "/get_planner_params": "moveit_msgs/srv/GetPlannerParams",
+    "/set_planner_params": "moveit_msgs/srv/SetPlannerParams",
     "/get_planning_scene": "moveit_msgs/srv/GetPlanningScene",
     "/apply_planning_scene": "moveit_msgs/srv/ApplyPlanningScene",
     "/clear_octomap": "std_srvs/srv/Empty",
@@ -536,3 +538,14 @@ def test_a_straight_path_with_a_bad_step_or_frame_is_refused(planning, joints):
     answer = planning.call("/compute_cartesian_path", request)
     assert answer.error_code.val == -21
     assert "Unknown frame: nonsense" in answer.error_code.message
+
+
+def test_a_planners_parameters_are_set_and_told(planning: Any):
+    from moveit_msgs.msg import PlannerParams
+    from moveit_msgs.srv import GetPlannerParams, SetPlannerParams
+
+    which = {"pipeline_id": "ompl", "planner_config": "RRTConnectkConfigDefault", "group": "arm"}
+    given = PlannerParams(keys=["range"], values=["1.5"])
+    planning.call("/set_planner_params", SetPlannerParams.Request(params=given, **which))
+    told = planning.call("/get_planner_params", GetPlannerParams.Request(**which)).params
+    assert (told.keys, told.values) == (["range"], ["1.5"])

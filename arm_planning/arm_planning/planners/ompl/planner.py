@@ -5,6 +5,7 @@ its work is counted in edges: the same problem with the same seed has the same a
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -48,6 +49,16 @@ def planner_names() -> tuple[str, ...]:
     )
 
 
+def takes_range(name: str) -> bool:
+    """Return whether a planner's moves can be limited."""
+    return hasattr(getattr(ompl.geometric, name), "setRange")
+
+
+def takes_goal_bias(name: str) -> bool:
+    """Return whether a planner samples goals at a rate that can be set."""
+    return hasattr(getattr(ompl.geometric, name), "setGoalBias")
+
+
 State = Any
 """A state of OMPL's real vector space, whose stubs do not know that its slices are its numbers."""
 
@@ -58,9 +69,11 @@ class OmplPlanner:
 
     Attributes:
         name: one of `planner_names`.
+        parameters: "range" and "goal_bias", where the planner takes them; a range of 0 is OMPL's.
     """
 
     name: str
+    parameters: Mapping[str, float] = field(default_factory=dict)
 
     def plan(self, problem: PlanningProblem) -> Array:
         """Return a proved path, (m, n); see `PathPlanner`.
@@ -113,7 +126,13 @@ class OmplPlanner:
         for goal in goals:
             goal_states.addState(_state(space, goal))
         setup.setGoal(goal_states)
-        setup.setPlanner(getattr(ompl.geometric, self.name)(information))
+        planner = getattr(ompl.geometric, self.name)(information)
+        # A range of 0 lets OMPL choose, as before anything is set.
+        if reach := self.parameters.get("range", 0.0):
+            planner.setRange(reach)
+        if "goal_bias" in self.parameters:
+            planner.setGoalBias(self.parameters["goal_bias"])
+        setup.setPlanner(planner)
         setup.solve(ompl.base.PlannerTerminationCondition(guard.ends))
         guard.raise_error()
         if not setup.haveExactSolutionPath():
