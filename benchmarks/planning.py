@@ -71,11 +71,11 @@ class Score:
         return np.isfinite(self.lengths)
 
 
-def ours(given: Cell, model: CollisionModel) -> Plan:
+def ours(given: Cell, model: CollisionModel, limit_s: float = LIMIT_S) -> Plan:
     checker, group = Checker(model), given.arm.model.group(GROUP)
 
     def plan(start: np.ndarray, goal: np.ndarray, seed: int) -> np.ndarray | None:
-        deadline = Deadline(time.process_time() + LIMIT_S, time.process_time)
+        deadline = Deadline(time.process_time() + limit_s, time.process_time)
         problem = PlanningProblem(
             group, start, OneGoal(goal), checker, deadline=deadline, seed=seed
         )

@@ -84,7 +84,8 @@ class _Ends:
     def __init__(self, arm: Arm, scene: PlanningScene, random: np.random.Generator) -> None:
         self._checker = CollisionModel(arm.model, scene, GROUP)
         self._group = arm.model.group(GROUP)
-        self._inverse = InverseKinematics(arm.model, GROUP)
+        # No time passes for it, so that a busy machine gets the same problems.
+        self._inverse = InverseKinematics(arm.model, GROUP, clock=lambda: 0.0)
         self._reach, self._random = arm.reach_m, random
 
     def anywhere(self) -> tuple[np.ndarray, np.ndarray]:

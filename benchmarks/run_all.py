@@ -38,6 +38,7 @@ SCRIPTS = (
     "sweep.py",
     "inverse_kinematics.py",
     "planning.py",
+    "planning_quality.py",
     "move_group.py",
     "fuzzing.py",
     "page.py",
