@@ -32,6 +32,9 @@ AT_LIMITS = 0.1
 NEAR_M = 0.002
 """How much the shapes of links are grown, but for meshes: what comes near may touch, too."""
 BATCH = 500
+HOME = "home"
+HOME_SAMPLES = 2_000
+"""States to look at, farther and farther away, if the robot collides at home."""
 
 Warn = Callable[[str], None]
 
@@ -47,7 +50,7 @@ def make_srdf(
 
     Args:
         robot: the robot.
-        warn: is told what collides in the states called home.
+        warn: is told what collides in the states called home, which are then moved.
         samples: number of states to look at, at least MIN_SAMPLES.
         seed: the same robot and seed give the same SRDF.
         meshes: cuts meshes, as for `CollisionModel`.
@@ -68,9 +71,7 @@ def make_srdf(
     every = [(min(a, b), max(a, b)) for i, a in enumerate(solid) for b in solid[i + 1 :]]
     pairs |= {pair: "Never" for pair in every if pair not in pairs and pair not in touching}
     made = replace(srdf, disabled={pair: pairs[pair] for pair in sorted(pairs)})
-    for sentence in sampler.contacts_at_home(made):
-        warn(sentence)
-    return made
+    return sampler.with_free_home(made, warn)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,22 +117,35 @@ class _Sampler:
                 found |= _touching(collisions, q)
         return found
 
-    def contacts_at_home(self, srdf: Srdf) -> Iterator[str]:
-        """Yield a sentence for each named state in which the robot collides."""
+    def with_free_home(self, srdf: Srdf, warn: Warn) -> Srdf:
+        """Return the SRDF with the states home where nothing collides, near to where they are.
+
+        What collides is told, and also where there is no such state.
+        """
         model = planning_model(self.robot, srdf, warn=_ignore)
-        home = {
-            joint: position
-            for (_, name), state in model.states.items()
-            if name == "home"
-            for joint, position in state.items()
-        }
+        positions: dict[str, float] = {}
+        for (_, name), state in model.states.items():
+            positions |= state if name == HOME else {}
+        home = np.array([positions.get(joint, 0.0) for joint in model.joints])
         collisions = self._collisions(model, srdf.disabled)
-        q = np.array([home.get(joint, 0.0) for joint in model.joints])
-        for contact in collisions.contacts(q):
-            yield (
-                f"at home {contact}: set another state, or disable the collisions of the two if "
-                "they may touch"
-            )
+        contacts = collisions.contacts(home)
+        if not contacts:
+            return srdf
+        reaches = np.linspace(0.0, 1.0, HOME_SAMPLES)
+        states = zip(reaches, self._states(model, HOME_SAMPLES), strict=True)
+        candidates = (home + reach * (q - home) for reach, q in states)
+        free = next((q for q in candidates if collisions.is_free(q)), None)
+        what = "set another state" if free is None else "home is moved to a state without contact"
+        for contact in contacts:
+            warn(f"at home {contact}: {what}; if the two may touch, disable their collisions")
+        if free is None:
+            return srdf
+        moved = {joint: (float(q),) for joint, q in zip(model.joints, free, strict=True)}
+        renewed = {
+            key: {joint: moved[joint] for joint in state} if key[1] == HOME else state
+            for key, state in srdf.states.items()
+        }
+        return replace(srdf, states=renewed)
 
     def _model(self, robot: Robot) -> PlanningModel:
         return planning_model(robot, self.srdf, warn=_ignore)

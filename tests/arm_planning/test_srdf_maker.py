@@ -9,7 +9,7 @@ from arm_description import expand_xacro, parse_urdf, resolve_uri
 from arm_planning.collision.model import CollisionModel
 from arm_planning.robot.build import planning_model
 from arm_planning.robot.srdf import Srdf, parse_srdf
-from arm_planning.scene.allowed_collisions import AllowedCollisions
+from arm_planning.scene.allowed_collisions import AllowedCollisions, allowed_collisions
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.srdf_maker import make_srdf
 
@@ -62,11 +62,36 @@ def test_pairs_that_need_no_check_are_told_by_samples():
     }
 
 
-def test_what_collides_at_home_is_told():
-    assert made()[1] == (
-        "at home arm with ring, 150 mm deep: set another state, or disable the collisions of the "
-        "two if they may touch",
+def test_home_is_moved_away_from_what_collides_there():
+    srdf, told = made()
+    assert told == (
+        "at home arm with ring, 150 mm deep: home is moved to a state without contact; if the two "
+        "may touch, disable their collisions",
     )
+    model = planning_model(parse_urdf(SPINNER), srdf, warn=lambda _: None)
+    scene = PlanningScene(dict.fromkeys(model.joints, 0.0), allowed=allowed_collisions(srdf))
+    home = model.states["arm", "home"]
+    assert CollisionModel(model, scene).is_free(np.array([home[joint] for joint in model.joints]))
+    assert 0.0 < max(map(abs, home.values())) < 1.0
+
+
+def test_a_robot_that_collides_everywhere_keeps_its_home():
+    fixed = {"kind": "fixed", "limits": None}
+    between_walls = robot(
+        link("base"),
+        *(ball("left", 0.65), ball("right", 0.65), ball("arm", 0.1, x=0.5)),
+        joint("left_mount", "base", "left", xyz="0 0.5 0", **fixed),
+        joint("right_mount", "base", "right", xyz="0 -0.5 0", **fixed),
+        joint("turn", "base", "arm", axis="0 0 1"),
+    )
+    told: list[str] = []
+    srdf = make_srdf(parse_urdf(between_walls), told.append)
+    assert srdf.states["arm", "home"] == {"turn": (0.0,)}
+    assert [sentence.split(", ")[0] for sentence in told] == [
+        "at home arm with left",
+        "at home arm with right",
+    ]
+    assert all(": set another state; if the two may touch" in sentence for sentence in told)
 
 
 def test_the_same_robot_gives_the_same_srdf():
