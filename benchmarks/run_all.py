@@ -40,6 +40,7 @@ SCRIPTS = (
     "planning.py",
     "planning_quality.py",
     "move_group.py",
+    "planning_beside_control.py",
     "fuzzing.py",
     "page.py",
 )

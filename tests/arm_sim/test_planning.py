@@ -1,8 +1,12 @@
 """Plans of the library, around what is in its world."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from arm_gazebo.recording.replay import Replay
+from arm_gazebo.recording.run_file import RunFile
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_sim import CallError, Simulation
 
@@ -37,6 +41,25 @@ def test_the_same_goal_from_the_same_state_gives_the_same_plan(sim):
     first, second = sim.plan("home"), sim.plan("home")
     assert np.array_equal(first.positions, second.positions)
     assert np.array_equal(first.times_s, second.times_s)
+
+
+def test_a_recording_of_planned_motions_replays_with_equal_states(sim, tmp_path: Path):
+    with sim.record(tmp_path / "planned.run"):
+        sim.follow(sim.plan("ready"))
+        sim.follow(sim.plan("home"))
+    result = Replay(RunFile(tmp_path / "planned.run")).run()
+    assert result.difference is None
+    assert result.periods > 50
+
+
+def test_a_plan_made_again_from_a_snapshot_ends_in_the_same_bits(sim):
+    sim.follow(sim.plan("home"))
+    start, ends = sim.save(), []
+    for _ in range(2):
+        sim.restore(start)
+        sim.follow(sim.plan("ready"))
+        ends.append([(joint.position, joint.velocity) for joint in sim.joints.values()])
+    assert ends[0] == ends[1]
 
 
 def test_a_pose_is_in_the_world(sim):
