@@ -37,8 +37,14 @@ setup(
     ),
     license="Apache-2.0",
     entry_points={
-        "console_scripts": ["move_group = arm_planning.move_group_node:main"],
-        "launch_py.packages": ["moveit_ros_move_group = arm_planning"],
-        "launch_py.nodes": ["move_group = move_group"],
+        "console_scripts": [
+            "move_group = arm_planning.move_group_node:main",
+            "servo_node = arm_planning.servo_node:main",
+        ],
+        "launch_py.packages": [
+            "moveit_ros_move_group = arm_planning",
+            "moveit_servo = arm_planning",
+        ],
+        "launch_py.nodes": ["move_group = move_group", "servo_node = servo_node"],
     },
 )

@@ -164,6 +164,8 @@ def nodes(words: Mapping[str, str]) -> list[Action]:
 
     if words["headless"] == "false":
         check_display()
+    if words.get("servo") == "true" and words["planning"] == "false":
+        raise UsageError("servo:=true needs planning:=true")
     find_world(words["world"])  # The simulation would say so, too, but among what has started.
     if words["robots"] or words["copies"] != "1":
         if words["planning"] == "true":

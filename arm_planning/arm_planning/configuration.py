@@ -14,6 +14,7 @@ from arm_planning.errors import MoveItErrorCode, PlanningError
 
 PLANNING = "robot_description_planning"
 SEMANTIC = "robot_description_semantic"
+SERVO = "moveit_servo"
 KINEMATICS = "robot_description_kinematics"
 CONTROLLER_FILES = ("moveit_controllers.yaml", "moveit2_controllers.yaml")
 PIPELINE_SUFFIX = "_planning.yaml"
@@ -55,6 +56,21 @@ def move_group_parameters(folder: Path) -> dict[str, Any]:
             "or moveit_controllers.yaml"
         )
     return parameters
+
+
+def servo_parameters(path: Path) -> dict[str, Any]:
+    """Return the parameters of servo_node in a file as moveit_servo's users write it.
+
+    Args:
+        path: YAML: the parameters at the top, or below `moveit_servo`.
+
+    Raises:
+        PlanningError: there is no such file, or it has no parameters.
+    """
+    if not path.is_file():
+        raise _refusal(f"there is no file {path}")
+    values = _yaml(path)
+    return {SERVO: values.get(SERVO, values)}
 
 
 def _yaml(path: Path) -> Mapping[str, Any]:

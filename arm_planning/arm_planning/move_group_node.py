@@ -16,9 +16,9 @@ def application(process: NodeProcess) -> Iterator[None]:
     """Serve until the process ends."""
     # Imported only after the environment is prepared, because it locates the message packages.
     from arm_planning.ros.move_group import MoveGroup
-    from arm_planning.ros.robot_setup import move_group_node, read_setup, scene_node
+    from arm_planning.ros.robot_setup import planning_node, read_setup, scene_node
 
-    node = first_node(move_group_node)
+    node = first_node(lambda: planning_node("move_group"))
     setup = read_setup(node)
     private = scene_node()
     process.executor.add_node(private)

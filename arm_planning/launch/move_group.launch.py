@@ -1,5 +1,6 @@
-"""Motion planning for a robot: the node move_group, for a simulation or a real arm that runs."""
+"""Motion planning for a robot that runs, simulated or real: move_group, and servo_node."""
 
+from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -36,10 +37,13 @@ def move_group(context: LaunchContext) -> list[Action]:
             configured = move_group_parameters(folder)
         except (PlanningError, DescriptionError) as error:
             raise UsageError(f"moveit_config:={words['moveit_config']}: {error}") from error
-    own: dict[str, Any] = {
+    robot = {
         "robot_description": words.get("planning_description", ""),
         "use_sim_time": words["use_sim_time"] == "true",
         "package_path": words.get("package_path", ""),
+    }
+    own: dict[str, Any] = {
+        **robot,
         "seed": seed(words["planning_seed"]),
         "scene_from_world": words["scene_from_world"] == "true",
     }
@@ -57,6 +61,41 @@ def move_group(context: LaunchContext) -> list[Action]:
             title="Motion planning is up",
             topics=[("/move_action", "moveit_msgs/action/MoveGroup, as MoveIt's move_group")],
             commands=[("move", "arm move --help")],
+        ),
+        *(servo(words, {**configured, **robot}) if words["servo"] == "true" else ()),
+    ]
+
+
+def servo(words: Mapping[str, str], robot: Mapping[str, Any]) -> list[Action]:
+    """Return the node that jogs the robot.
+
+    Raises:
+        UsageError: its file of parameters cannot be used.
+    """
+    from arm_planning.configuration import servo_parameters
+    from arm_planning.errors import PlanningError
+
+    configured: dict[str, Any] = {}
+    if words["servo_config"]:
+        try:
+            configured = servo_parameters(Path(words["servo_config"]).expanduser())
+        except PlanningError as error:
+            raise UsageError(f"servo_config:={words['servo_config']}: {error}") from error
+    return [
+        Node(
+            package="arm_planning",
+            executable="servo_node",
+            namespace=words.get("namespace", ""),
+            parameters=[{**robot, **configured}],
+            ready=Notified(),
+        ),
+        ReadyPanel(
+            title="The jog is up",
+            topics=[
+                ("/servo_node/delta_twist_cmds", "geometry_msgs/msg/TwistStamped"),
+                ("/servo_node/delta_joint_cmds", "control_msgs/msg/JointJog"),
+                ("/servo_node/status", "moveit_msgs/msg/ServoStatus"),
+            ],
         ),
     ]
 
@@ -104,6 +143,17 @@ def generate_launch_description() -> LaunchDescription:
                 choices=["true", "false"],
                 description="the simulation's things are objects of the planning scene, as they "
                 "move; for a robot whose base is fixed",
+            ),
+            DeclareLaunchArgument(
+                "servo",
+                default_value="false",
+                choices=["true", "false"],
+                description="start servo_node, too, which jogs the robot as moveit_servo does",
+            ),
+            DeclareLaunchArgument(
+                "servo_config",
+                default_value="",
+                description="YAML file with parameters of moveit_servo",
             ),
             DeclareLaunchArgument(
                 "use_sim_time",

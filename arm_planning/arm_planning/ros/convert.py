@@ -107,6 +107,12 @@ def duration_message(time_s: float) -> Duration:
     return Duration(sec=sec, nanosec=nanosec)
 
 
+def stamp_message(time_s: float) -> Time:
+    """Return a time as a message, rounded to whole nanoseconds."""
+    sec, nanosec = divmod(round(time_s * NANOSECONDS), NANOSECONDS)
+    return Time(sec=sec, nanosec=nanosec)
+
+
 def joint_positions(model: PlanningModel, message: RobotState, warn: Warn) -> dict[str, float]:
     """Return the positions of active joints in a state; other joints are passed over.
 

@@ -64,10 +64,10 @@ class PlanningSetup:
     kinematics: Mapping[str, KinematicsSettings] = field(default_factory=dict)
 
 
-def move_group_node() -> Node:
-    """Return the node, whose parameters are those that it is given, as upstream."""
+def planning_node(name: str) -> Node:
+    """Return a node whose parameters are those that it is given, as upstream."""
     return Node(
-        "move_group",
+        name,
         allow_undeclared_parameters=True,
         automatically_declare_parameters_from_overrides=True,
     )

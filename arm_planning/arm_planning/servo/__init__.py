@@ -1,0 +1,1 @@
+"""Jogging: small motions on command, slowed down before singularities, limits and collisions."""

@@ -1,0 +1,201 @@
+"""servo_node beside move_group, jogged as moveit_servo's clients do it."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+from programs import Program
+
+pytestmark = pytest.mark.ros
+
+INVALID, FINE, DECELERATE_FOR_COLLISION, HALT_FOR_COLLISION = -1, 0, 4, 5
+JOINT_JOG, TWIST = 0, 1
+BASE, SHOULDER = "link1_to_link2", "link2_to_link3"
+
+
+@pytest.fixture(scope="module")
+def launched(launch_for_file: Callable[..., Program]) -> Program:
+    """Return the simulation with move_group and servo_node, ready."""
+    program = launch_for_file("mycobot", "planning:=true", "servo:=true")
+    program.wait_until_ready()
+    program.wait_for_line("commands go to /arm_controller/joint_trajectory")
+    return program
+
+
+class JogClient:
+    """A client of servo_node that holds keys down."""
+
+    def __init__(self, planning: Any) -> None:
+        from control_msgs.msg import JointJog
+        from geometry_msgs.msg import TwistStamped
+        from moveit_msgs.msg import ServoStatus
+        from trajectory_msgs.msg import JointTrajectory
+
+        client = planning.client
+        self.planning, self.client = planning, client
+        self.statuses = client.subscribe(ServoStatus, "/servo_node/status")
+        self.trajectories = client.subscribe(JointTrajectory, "/arm_controller/joint_trajectory")
+        self.joints = client.publisher(JointJog, "/servo_node/delta_joint_cmds")
+        self.twists = client.publisher(TwistStamped, "/servo_node/delta_twist_cmds")
+
+    def switch(self, kind: int) -> bool:
+        from moveit_msgs.srv import ServoCommandType
+
+        request = ServoCommandType.Request(command_type=kind)
+        name = "/servo_node/switch_command_type"
+        return self.client.call(ServoCommandType, name, request).success
+
+    def joint_jog(self, joint: str, speed: float) -> Any:
+        from control_msgs.msg import JointJog
+
+        return JointJog(joint_names=[joint], velocities=[speed])
+
+    def twist(self, z: float, frame: str = "") -> Any:
+        from geometry_msgs.msg import TwistStamped
+
+        message = TwistStamped()
+        message.header.frame_id, message.twist.linear.z = frame, z
+        return message
+
+    @contextmanager
+    def held(self, command: Any) -> Iterator[None]:
+        """Send a command with each joint state, in whose time it is stamped."""
+        from sensor_msgs.msg import JointState
+
+        publisher = self.joints if hasattr(command, "joint_names") else self.twists
+
+        def send(state: JointState) -> None:
+            command.header.stamp = state.header.stamp
+            publisher.publish(command)
+
+        subscription = self.client.node.create_subscription(JointState, "/joint_states", send, 10)
+        try:
+            yield
+        finally:
+            self.client.run(
+                lambda: self.client.node.destroy_subscription(subscription), "the end of a key"
+            )
+
+    def is_refused(self, command: Any, sentence: str) -> None:
+        """Hold a command down until the status says why it is not used."""
+        self.statuses.clear()
+        with self.held(command):
+            self.status(INVALID, sentence)
+
+    def status(self, code: int, part: str = "") -> None:
+        """Wait for a status."""
+        self.statuses.wait_until(
+            lambda m: any(each.code == code and part in each.message for each in m),
+            f"status {code} with '{part}'",
+        )
+
+    def tip(self) -> Any:
+        """Return where the gripper is in the planning frame."""
+        from moveit_msgs.srv import GetPositionFK
+
+        request = GetPositionFK.Request(fk_link_names=["gripper_base"])
+        positions = self.planning.positions()
+        request.robot_state.joint_state.name = list(positions)
+        request.robot_state.joint_state.position = list(positions.values())
+        return self.planning.call("/compute_fk", request).pose_stamped[0].pose.position
+
+    def position(self, joint: str) -> float:
+        return self.planning.positions()[joint]
+
+
+@pytest.fixture(scope="module")
+def jog(planning_for_file: Any) -> JogClient:
+    """Return the client of the whole file."""
+    return JogClient(planning_for_file)
+
+
+def test_before_a_type_is_chosen_nothing_moves_and_the_status_says_why(jog: JogClient):
+    jog.is_refused(jog.joint_jog(BASE, 1.0), "no command type is chosen yet")
+    assert not jog.switch(7)
+    assert not jog.trajectories.messages
+
+
+def test_a_joint_moves_while_commands_come_and_then_nothing_is_commanded(
+    jog: JogClient, launched: Program
+):
+    assert jog.switch(JOINT_JOG)
+    with jog.held(jog.joint_jog(BASE, 0.8)):
+        jog.planning.joint_moves(BASE, 0.2)
+    jog.planning.stands_still()
+
+    def is_silent() -> bool:
+        jog.trajectories.clear()
+        jog.planning.joint_states.clear()
+        jog.planning.joint_states.wait_for(50)
+        return not jog.trajectories.messages
+
+    jog.client.wait_until(is_silent, "no commands after the end of the motion")
+    assert jog.position(BASE) > 0.2
+
+
+def test_a_twist_lowers_the_tip_along_a_frame_of_the_scene(
+    jog: JogClient, planning: Any, joint_goal: Any, request_of: Any, joints: Any
+):
+    bent = joint_goal(joints(0.0, -0.5, 1.57, 0.6, 0.3))
+    assert planning.move(request_of(bent)).result.error_code.val == 1
+    before = jog.tip()
+    assert jog.switch(TWIST)
+    with jog.held(jog.twist(-0.3, "base_link")):
+        jog.planning.joint_moves("link3_to_link4", 0.05)
+    jog.planning.stands_still()
+    after = jog.tip()
+    assert after.z < before.z - 0.005
+    assert abs(after.x - before.x) + abs(after.y - before.y) < 0.5 * (before.z - after.z)
+
+
+def test_it_stops_before_an_object_of_the_scene_and_the_way_back_is_open(
+    jog: JogClient, planning: Any, box: Any, joint_goal: Any, request_of: Any, joints: Any
+):
+    assert planning.move(request_of(joint_goal(joints(0.0, -1.2)))).result.error_code.val == 1
+    assert planning.apply_object(box("post", (0.2, 0.25, 0.25), (0.04, 0.04, 0.6)))
+    assert jog.switch(JOINT_JOG)
+    jog.statuses.clear()
+    with jog.held(jog.joint_jog(BASE, -1.0)):
+        stopped = jog.statuses.wait_until(
+            lambda m: any("post" in each.message for each in m), "the post"
+        )
+        planning.stands_still()
+    codes = {each.code for each in stopped if "post" in each.message}
+    assert codes <= {DECELERATE_FOR_COLLISION, HALT_FOR_COLLISION}
+    jog.statuses.clear()
+    jog.status(FINE)
+    jog.statuses.clear()
+    with jog.held(jog.joint_jog(BASE, 1.0)):
+        planning.joint_moves(BASE, 0.1)
+    assert not any("post" in each.message for each in jog.statuses.messages)
+
+
+def test_what_cannot_be_used_does_not_move_the_robot(jog: JogClient):
+    assert jog.switch(JOINT_JOG)
+    before = jog.planning.stands_still()
+    jog.is_refused(jog.joint_jog("elbow", 1.0), "no joint 'elbow'; ")
+    jog.is_refused(jog.joint_jog(BASE, float("nan")), f"the velocity of '{BASE}' is nan")
+    jog.is_refused(jog.twist(0.5), "a command of type TWIST came, but JOINT_JOG is chosen")
+    assert jog.switch(TWIST)
+    jog.is_refused(jog.twist(0.5, "gripper_bas"), "Unknown frame: gripper_bas")
+    jog.statuses.clear()
+    jog.twists.publish(jog.twist(0.5))
+    jog.status(INVALID, "the command's stamp is")
+    assert jog.planning.stands_still() == pytest.approx(before, abs=1e-3)
+
+
+def test_a_paused_jog_drops_commands_until_it_goes_on(jog: JogClient):
+    from std_srvs.srv import SetBool
+
+    assert jog.switch(JOINT_JOG)
+    before = jog.planning.stands_still()
+    assert jog.client.call(
+        SetBool, "/servo_node/pause_servo", SetBool.Request(data=True)
+    ).message.startswith("paused")
+    with jog.held(jog.joint_jog(BASE, 0.5)):
+        jog.planning.joint_states.clear()
+        jog.planning.joint_states.wait_for(50)
+        assert jog.position(BASE) == pytest.approx(before[BASE], abs=1e-3)
+        jog.client.call(SetBool, "/servo_node/pause_servo", SetBool.Request(data=False))
+        jog.planning.joint_moves(BASE, 0.05)
