@@ -41,6 +41,7 @@ SCRIPTS = (
     "planning_quality.py",
     "move_group.py",
     "planning_beside_control.py",
+    "jog.py",
     "fuzzing.py",
     "page.py",
 )

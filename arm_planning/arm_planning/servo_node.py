@@ -16,12 +16,12 @@ def application(process: NodeProcess) -> Iterator[None]:
     """Serve until the process ends."""
     # Imported only after the environment is prepared, because it locates the message packages.
     from arm_planning.ros.robot_setup import planning_node, read_setup
-    from arm_planning.ros.servo import Servo
+    from arm_planning.ros.servo import JogServer
     from arm_planning.ros.servo_parameters import read_servo_settings
 
     node = first_node(lambda: planning_node("servo_node"))
     settings = read_servo_settings(node)
-    servo = Servo(node, read_setup(node), settings)
+    servo = JogServer(node, read_setup(node), settings)
     process.executor.add_node(node)
     servo.begin()
     yield

@@ -60,7 +60,7 @@ class _Stamped:
     stamp_s: float
 
 
-class Servo:
+class JogServer:
     """Jogs a robot as it is told. Executor's thread.
 
     Periods are those of the node's clock: simulation time, where it uses that. While nothing moves
