@@ -14,6 +14,8 @@ Points = NDArray[np.float64]
 
 NEAR_FACTOR = 1.2
 """Things no larger than the robots and within this many robot sizes of them are near."""
+MAX_SPREAD = 1.5
+"""How many times as large as the robots the subject of a picture may be."""
 MARGIN = 1.15
 """Factor by which the picture is larger than its subject."""
 MIN_SIZE_M = 0.1
@@ -82,7 +84,7 @@ def fit_view(
     Returns:
         None if the scene is empty.
     """
-    subject = [*robots, *_near(robots, things)] if robots else things
+    subject = _subject(robots, things) if robots else things
     if not subject:
         return None
     corners = np.concatenate([body.corners for body in subject])
@@ -101,16 +103,27 @@ def fit_view(
     return View(tuple(best.tolist()), tuple(middle.tolist()))
 
 
-def _near(robots: list[Body], things: list[Body]) -> Iterator[Body]:
-    """Yield the things that a picture of the robots should show."""
+def _subject(robots: list[Body], things: list[Body]) -> list[Body]:
+    """Return the robots, and the things that a picture of them should show, the nearest first."""
     corners = np.concatenate([body.corners for body in robots])
     low, high = corners.min(axis=0), corners.max(axis=0)
     size = max(float(np.linalg.norm(high - low)), MIN_SIZE_M)
-    for thing in things:
-        extent = np.subtract(thing.high, thing.low)
-        gap = np.maximum(np.subtract(thing.low, high), low - np.array(thing.high)).clip(min=0.0)
-        if extent.max() <= size and np.linalg.norm(gap) <= NEAR_FACTOR * size:
-            yield thing
+
+    def gap_m(thing: Body) -> float:
+        gaps = np.maximum(np.subtract(thing.low, high), low - np.array(thing.high))
+        return float(np.linalg.norm(gaps.clip(min=0.0)))
+
+    subject = [*robots]
+    widest = body_of(corners)
+    for thing in sorted(things, key=gap_m):
+        wider = body_of(np.concatenate([widest.corners, thing.corners]))
+        spread_m = float(np.linalg.norm(np.subtract(wider.high, wider.low)))
+        extent_m = np.subtract(thing.high, thing.low).max()
+        is_near = extent_m <= size and gap_m(thing) <= NEAR_FACTOR * size
+        if is_near and spread_m <= MAX_SPREAD * size:
+            subject.append(thing)
+            widest = wider
+    return subject
 
 
 def _directions() -> Iterator[tuple[float, Points]]:

@@ -90,12 +90,12 @@ async def _build(server: PageServer, send: Send, config: PageConfig | None) -> t
     def is_watched() -> bool:
         return bool(server.get_clients())
 
-    cameras = {"Cameras": (CameraPanel(send, is_watched),)}
+    above, below = gui.add_panel(visible=False), gui.add_panel()
+    below.dock_left()
+    above.dock_above(below)
+    below.set_width(LEFT_PANEL_WIDTH_PX)
+    cameras = {"Cameras": (CameraPanel(send, is_watched, above),)}
     plots = {"Plots": (PlotPanel(is_watched),)}
-    above, below = gui.add_panel(), gui.add_panel()
-    above.dock_left()
-    below.dock_below(above)
-    above.set_width(LEFT_PANEL_WIDTH_PX)
     tabs = gui.add_tab_group()
     planning = PlanningPanel(server.scene, frames, send, tabs.add_tab)
     planning.build(gui)

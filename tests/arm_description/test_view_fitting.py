@@ -49,6 +49,16 @@ def test_what_is_near_a_robot_is_in_the_picture_and_what_is_large_or_far_is_not(
     assert np.linalg.norm(view.position) < 4.0
 
 
+def test_things_around_a_robot_leave_it_half_of_the_picture():
+    robot = Body((-0.1, -0.1, 0.0), (0.1, 0.1, 0.6))
+    near = Body((0.2, 0.0, 0.0), (0.3, 0.1, 0.1))
+    boxes = [Body((0.2, y, 0.0), (0.7, y + 0.5, 0.5)) for y in (-0.9, 0.4)]
+    view = fit_view([robot], [*boxes, near], nothing_blocks, FOV_RAD, 1.0)
+    across = np.ptp(pixels(view, robot.corners, 1.0), axis=1).max()
+    assert across > 0.9  # of 2
+    assert np.abs(pixels(view, near.corners, 1.0)).max() < 1.0
+
+
 def test_the_camera_is_where_nothing_blocks_the_view():
     robot = Body((-0.1, -0.1, 0.0), (0.1, 0.1, 0.6))
 

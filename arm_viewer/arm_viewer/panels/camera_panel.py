@@ -9,19 +9,25 @@ from numpy.typing import NDArray
 from viser import GuiApi, GuiImageHandle
 
 from arm_viewer.errors import PictureError
-from arm_viewer.panels.panel import PROBLEM_COLOUR, note, show
+from arm_viewer.panels.panel import PROBLEM_COLOUR, Hideable, note, show
 from arm_viewer.requests import Send, ShowPictures
 from arm_viewer.snapshot import Picture, Snapshot
 
 NOTHING = np.zeros((3, 4, 3), dtype=np.uint8)
-NO_CAMERA = "No image topic is published."
 
 
 class CameraPanel:
     """A switch and an image for every image topic; the first topic is shown by default."""
 
-    def __init__(self, send: Send, is_watched: Callable[[], bool]) -> None:
-        """Show images while `is_watched` returns whether any browser is connected."""
+    def __init__(self, send: Send, is_watched: Callable[[], bool], window: Hideable) -> None:
+        """Show the images that are wanted.
+
+        Args:
+            send: takes requests for images.
+            is_watched: returns whether any browser is connected.
+            window: what holds this panel; it is hidden while there is no image topic.
+        """
+        self._window = window
         self._send = send
         self._is_watched = is_watched
         self._cameras: dict[str, _Camera] = {}
@@ -31,8 +37,6 @@ class CameraPanel:
         """Create the folder for the images."""
         self._gui = gui
         self._place = gui.add_folder(None)
-        with self._place:
-            self._hint = gui.add_html(note(NO_CAMERA))
 
     def update(self, snapshot: Snapshot) -> None:
         """Show the newest images."""
@@ -40,7 +44,7 @@ class CameraPanel:
             if topic not in self._cameras:
                 with self._place:
                     self._cameras[topic] = _Camera(self._gui, topic, shown=not self._cameras)
-        show(self._hint, not snapshot.image_topics)
+        show(self._window, bool(snapshot.image_topics))
         for topic, camera in self._cameras.items():
             camera.update(topic in snapshot.image_topics, snapshot.pictures.get(topic))
         shown = [topic for topic, camera in self._cameras.items() if camera.is_shown]

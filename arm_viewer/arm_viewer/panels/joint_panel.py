@@ -24,6 +24,7 @@ MAX_HOLD_S = 5.0
 FOLLOW_S = 0.1
 """Time between two positions that a slider shows of a joint that moves."""
 NO_DRIVE = "No active controller takes positions: the sliders only show them."
+NAME_STYLE = "width:100%;max-width:0;white-space:nowrap;overflow:hidden;text-overflow:ellipsis"
 NUMBER_STYLE = "text-align:right;vertical-align:top;white-space:nowrap;padding-left:1em"
 
 
@@ -130,13 +131,14 @@ class _MimicTable:
     def update(self, readings: Mapping[str, JointReading]) -> None:
         """Show the positions of the mimic joints."""
         rows = "".join(
-            f'<tr><td>{escape(name)}<span style="opacity:0.6"> follows {escape(leader)}</span></td>'
+            f'<tr><td style="{NAME_STYLE}" title="{escape(name)} follows {escape(leader)}">'
+            f'{escape(name)}<span style="opacity:0.6"> follows {escape(leader)}</span></td>'
             f'<td style="{NUMBER_STYLE}">{_position(readings.get(name))}</td></tr>'
             for name, leader in self._leaders.items()
         )
         text = (
             '<table style="font-size:0.75rem;margin:0.5em 0.75em;width:calc(100% - 1.5em);'
-            f'overflow-wrap:anywhere;font-variant-numeric:tabular-nums">{rows}</table>'
+            f'font-variant-numeric:tabular-nums">{rows}</table>'
         )
         if text != self._shown:
             self._shown = text

@@ -7,7 +7,7 @@ says so; `.ci/run` installs it.
 import re
 import shutil
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -60,6 +60,10 @@ class Visitor:
         """Open the page, and wait until it has its tabs."""
         self.page.goto(url)
         self.page.get_by_role("tab", name="Robot").wait_for(state="attached")
+
+    def place(self, selector: str) -> dict[str, float]:
+        """Return x, y, width and height of the first element of a selector, in pixels."""
+        return self.page.locator(selector).first.bounding_box()
 
     def open_tab(self, name: str) -> None:
         """Select a tab."""
@@ -178,12 +182,12 @@ def browser():
 def new_visitor(browser, simulation, page_url) -> Iterator[Callable[..., Visitor]]:
     """Return a function that lets one more visitor open the page of the simulation.
 
-    Its argument is a script that runs before those of the page.
+    Its arguments are a script that runs before those of the page, and the size of the window.
     """
     pages = []
 
-    def arrive(script: str = "") -> Visitor:
-        page = browser.new_page(viewport=VIEWPORT)
+    def arrive(script: str = "", viewport: Mapping[str, int] = VIEWPORT) -> Visitor:
+        page = browser.new_page(viewport=viewport)
         pages.append(page)
         page.set_default_timeout(TIMEOUT_S * 1000)
         page.add_init_script(f"{script}; {COUNTED_DRAWING}")

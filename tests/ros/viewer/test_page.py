@@ -94,6 +94,29 @@ def test_a_browser_without_a_graphics_card_draws_without_what_costs_most(
     page.close()
 
 
+def test_a_slider_is_long_enough_to_be_dragged(visitor):
+    visitor.slider("j0").wait_for(state="attached")
+    assert visitor.place(".mantine-Slider-root")["width"] > 160
+
+
+def test_on_a_phone_the_robot_is_above_a_sheet_that_closes(new_visitor):
+    phone = new_visitor(viewport={"width": 390, "height": 844})
+    view, sheet = "canvas[data-engine]", "#root .mantine-Paper-root"
+
+    def is_above() -> bool:
+        top, bottom = phone.place(view), phone.place(sheet)
+        return bottom["width"] == 390 and abs(top["y"] + top["height"] - bottom["y"]) < 2
+
+    phone.wait_until(is_above, "the robot is above the sheet")
+    height = phone.place(view)["height"]
+    assert height > 844 / 3
+    assert phone.place("[aria-label='Expand panel Plots']")["y"] < 844
+    phone.page.get_by_text("Connected").click()
+    phone.wait_until(lambda: is_above() and phone.place(view)["height"] > height, "it closes")
+    assert phone.place(sheet)["height"] < 80
+    assert phone.errors == []
+
+
 FRAME_OF_CHANNEL = """() => {
   const poses = Object.entries(window.__viserMutable.nodePoseData);
   // The channel's numbers have half the length of viser's.
