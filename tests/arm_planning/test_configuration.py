@@ -2,7 +2,7 @@
 
 import pytest
 
-from arm_planning.configuration import move_group_parameters
+from arm_planning.configuration import move_group_parameters, servo_parameters
 from arm_planning.errors import PlanningError
 
 
@@ -48,3 +48,25 @@ def test_a_folder_that_cannot_be_used_is_named(tmp_path, files, words):
         (tmp_path / name).write_text(text)
     with pytest.raises(PlanningError, match=words):
         move_group_parameters(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "moveit_servo: {scale: {linear: 0.1}}",
+        "scale: {linear: 0.1}",
+        "/**: {ros__parameters: {moveit_servo: {scale: {linear: 0.1}}}}",
+    ],
+)
+def test_a_file_of_moveit_servo_is_read_with_and_without_its_name(tmp_path, text):
+    file = tmp_path / "servo.yaml"
+    file.write_text(text)
+    assert servo_parameters(file) == {"moveit_servo": {"scale": {"linear": 0.1}}}
+
+
+def test_a_file_of_moveit_servo_that_is_missing_or_broken_is_named(tmp_path):
+    with pytest.raises(PlanningError, match=r"there is no file .*servo\.yaml"):
+        servo_parameters(tmp_path / "servo.yaml")
+    (tmp_path / "list.yaml").write_text("[1, 2]")
+    with pytest.raises(PlanningError, match=r"list\.yaml is not a mapping"):
+        servo_parameters(tmp_path / "list.yaml")

@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 
 URGENT = 4.0
 """How much harder than by their limits joints brake before a collision."""
+UNLIMITED = 1e4
+"""Acceleration of a joint that has no limit, rad/s^2 or m/s^2."""
 AT_LIMIT = 1e-4
 """How near a margin counts as at it, rad or m."""
 
@@ -43,7 +45,8 @@ class JointBounds:
             )
         self._joints = group.joints
         self._velocity = velocity_factor * np.array([each.velocity for each in group.limits])
-        self.acceleration: Array = np.array([each.acceleration for each in group.limits])
+        accelerations = [min(each.acceleration, UNLIMITED) for each in group.limits]
+        self.acceleration: Array = np.array(accelerations)
         self._lower, self._upper = group.lower, group.upper
         margin = np.broadcast_to(np.asarray(margins, dtype=float), len(group.joints))
         # A range that is too narrow for its margins has none.

@@ -285,6 +285,11 @@ def test_copies_that_cannot_be_are_refused(given, sentence):
         plan_of("arm_gazebo.launch.py", **given)
 
 
+def test_a_jog_without_planning_is_refused():
+    with pytest.raises(UsageError, match="servo:=true needs planning:=true"):
+        plan_of("arm_gazebo.launch.py", servo="true")
+
+
 CONTROLLERS = """
 controller_manager:
   ros__parameters:

@@ -1,3 +1,6 @@
+from dataclasses import replace
+from math import inf
+
 import numpy as np
 import pytest
 from planning_models import model_of
@@ -77,3 +80,11 @@ def test_margins_that_fit_no_joints_are_refused():
     group = model_of(TWO, arm=(("first", "second"), "b")).group("arm")
     with pytest.raises(PlanningError, match="has 3 numbers; it has one for all joints"):
         JointBounds(group, (0.1, 0.1, 0.1))
+
+
+def test_a_joint_without_an_acceleration_limit_stops_at_the_margin():
+    group = model_of(TWO, arm=(("first", "second"), "b")).group("arm")
+    limits = tuple(replace(each, acceleration=inf) for each in group.limits)
+    bounds = JointBounds(replace(group, limits=limits), (0.1,))
+    speeds, _ = bounds.within_positions(array(0.89, 0.0), array(2.0, 0.0), PERIOD_S, halts_all=True)
+    assert 0.0 < speeds[0] < 0.01 / PERIOD_S + 1e-6
