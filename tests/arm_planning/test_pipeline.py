@@ -125,7 +125,9 @@ class FakePlanner:
 
 @pytest.fixture
 def planner(monkeypatch: pytest.MonkeyPatch) -> Planner:
-    monkeypatch.setattr(arm_planning.planner, "planner_for", lambda _name: FakePlanner())
+    monkeypatch.setattr(
+        arm_planning.planner, "planner_for", lambda _name, _parameters: FakePlanner()
+    )
     return Planner(MODEL, SCENE)
 
 

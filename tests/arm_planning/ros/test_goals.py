@@ -152,10 +152,13 @@ def test_a_cancel_that_comes_before_the_goal_begins_is_not_lost(server: Server):
 
 @pytest.mark.parametrize("duration_s", [float("nan"), -1.0, 0.0])
 def test_a_goal_waits_for_no_duration_that_is_none(duration_s: float):
-    ServedGoal(FakeHandle(0), MoveGroup.Feedback).wait(duration_s)
+    goal = ServedGoal(FakeHandle(0), MoveGroup.Feedback)
+    goal.wait(duration_s)
+    assert not goal.is_interrupted()
 
 
 def test_a_cancelled_goal_waits_no_longer():
     goal = ServedGoal(FakeHandle(0), MoveGroup.Feedback)
     goal.cancel()
     goal.wait(1e300)
+    assert goal.is_cancelled
