@@ -14,6 +14,8 @@ from arm_viewer.errors import ConfigError, ViewerError
 @contextmanager
 def application(process: NodeProcess) -> Iterator[None]:
     """Serve the page until the process ends."""
+    # Where SciPy is installed, trimesh would import it: 45 MB for what the page never uses.
+    sys.modules.setdefault("scipy", None)  # pyright: ignore[reportArgumentType]
     # Imported only after the environment is prepared, because it locates the message packages.
     from arm_viewer.page import page_running
     from arm_viewer.page_server import page_server
