@@ -69,9 +69,10 @@ class PlanningView:
         goal: where the next plan leads; None before one is chosen.
         plan: the latest plan; None if there is none.
         activity: what the move_group does for the page.
-        said: what the last plan, motion or change of the scene led to, in full.
+        said: what the last plan or motion led to, in full.
         failed: whether `said` is about a failure.
         scene: the planning scene; None until it is known.
+        scene_problem: why the last change of the scene by this page was not possible.
     """
 
     namespace: str
@@ -82,6 +83,7 @@ class PlanningView:
     said: str = ""
     failed: bool = False
     scene: PlanningScene | None = None
+    scene_problem: str = ""
 
 
 def default_group(model: PlanningModel) -> str:

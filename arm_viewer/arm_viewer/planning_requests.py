@@ -2,8 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from arm_node.rigid_transform import RigidTransform
+
+if TYPE_CHECKING:
+    # Imported at run time only where a move_group runs.
+    from arm_planning.scene.objects import CollisionObject
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,4 +72,27 @@ class StopMotion:
     namespace: str
 
 
-PlanningRequest = SetGoal | DragTip | PlanMotion | ExecutePlan | StopMotion
+@dataclass(frozen=True, slots=True)
+class AddObject:
+    """Add an object to the planning scene; it replaces one of the same name."""
+
+    namespace: str
+    object: "CollisionObject"
+
+
+@dataclass(frozen=True, slots=True)
+class RemoveObject:
+    """Remove an object from the planning scene.
+
+    Attributes:
+        namespace: namespace of the move_group.
+        name: name of the object.
+    """
+
+    namespace: str
+    name: str
+
+
+PlanningRequest = (
+    SetGoal | DragTip | PlanMotion | ExecutePlan | StopMotion | AddObject | RemoveObject
+)

@@ -11,6 +11,7 @@ from arm_planning.scene.frames import LinkPoses
 from arm_viewer.panels.panel import PROBLEM_COLOUR, note
 from arm_viewer.panels.path_player import PathPlayer
 from arm_viewer.panels.robot_panel import link_frames
+from arm_viewer.panels.scene_object_panel import SceneObjectPanel
 from arm_viewer.planning import Activity, PlanningView, default_group, named_poses
 from arm_viewer.planning_requests import (
     DragTip,
@@ -50,6 +51,9 @@ class MotionPanel:
             self._build_goal(gui)
             self._build_motion(gui)
             self._player = PathPlayer(gui, scene, view.namespace, view.model)
+        self._place = gui.add_folder("Planning scene", expand_by_default=False)
+        with self._place:
+            self._objects = SceneObjectPanel(gui, scene, view.namespace, view.model, send)
         self._shown: dict[str, str] = {}
 
     def is_for(self, snapshot: Snapshot) -> bool:
@@ -67,6 +71,7 @@ class MotionPanel:
         self._show_goal(view, origin, present)
         self._show_handle(view, origin, present)
         self._player.update(view.plan, origin, present, snapshot.made_s)
+        self._objects.update(view, origin, LinkPoses(self._model, present))
         is_busy = view.activity is not Activity.NONE
         for button in (self._plan, self._move):
             _set_disabled(button, is_busy or view.goal is None)
@@ -78,6 +83,8 @@ class MotionPanel:
         self._ghost.remove()
         self._handle.remove()
         self._player.remove()
+        self._objects.remove()
+        self._place.remove()
         self._folder.remove()
 
     def _build_goal(self, gui: GuiApi) -> None:

@@ -9,15 +9,18 @@ from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_viewer.planning import GoalState, PlanningView, filled
 from arm_viewer.planning_requests import (
+    AddObject,
     DragTip,
     ExecutePlan,
     PlanMotion,
     PlanningRequest,
+    RemoveObject,
     SetGoal,
     StopMotion,
 )
 from arm_viewer.ros.goal_checker import GoalChecker
 from arm_viewer.ros.motion_caller import MotionCaller
+from arm_viewer.ros.planning_scene_client import PlanningSceneClient
 from arm_viewer.ros.tip_solver import TipPose, TipSolver
 
 
@@ -50,6 +53,7 @@ class ObservedMoveGroup:
         self._present = present
         self._motions = MotionCaller(node, polled, namespace, model)
         self._checker = GoalChecker(node, namespace, self._take_checked)
+        self._scene = PlanningSceneClient(node, polled, namespace, model)
         self._solver = TipSolver(node, namespace, self._seed, self._take_solved)
 
     def serve(self, request: PlanningRequest) -> None:
@@ -65,22 +69,31 @@ class ObservedMoveGroup:
                 self._motions.execute()
             case StopMotion():
                 self._motions.stop()
+            case AddObject():
+                self._scene.add(request.object)
+            case RemoveObject():
+                self._scene.remove(request.name)
 
     def collect(self) -> None:
         """Take what has arrived."""
         self._solver.ask()
         self._checker.ask()
         self._motions.collect()
-        motions = self._motions
+        self._scene.collect()
+        motions, scene = self._motions, self._scene
         view = replace(
             self.view,
             plan=motions.plan,
             activity=motions.activity,
             said=motions.said,
             failed=motions.failed,
+            scene=scene.scene,
+            scene_problem=scene.problem,
         )
-        if view != self.view:
-            self.view = view
+        # By identity, because scenes may be large.
+        if view.scene is not self.view.scene and view.goal is not None:
+            self._checker.check(view.goal)
+        self.view = view
 
     def check(self) -> None:
         """End what is late; call it periodically."""
@@ -91,6 +104,7 @@ class ObservedMoveGroup:
         self._motions.close()
         self._checker.close()
         self._solver.close()
+        self._scene.close()
 
     def _set_goal(self, name: str, positions: JointPositions) -> None:
         group = self._model.groups.get(name)

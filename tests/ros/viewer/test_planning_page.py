@@ -8,6 +8,8 @@ pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 
 ELBOW = "link3_to_link4"
 READY_RAD = 1.5708
+HOME_M = "0.06 0.08 0.41"
+"""Where the gripper is at the pose "home"."""
 
 
 @pytest.fixture(scope="module")
@@ -46,6 +48,13 @@ def choose(visitor, label: str, option: str) -> None:
     visitor.page.get_by_role("option", name=option, exact=True).click()
 
 
+def enter(visitor, label: str, text: str) -> None:
+    """Type into the field beside a label."""
+    field = visitor.page.locator(f"xpath=//label[.='{label}']/following::input[1]")
+    field.fill(text)
+    field.press("Enter")
+
+
 def press(visitor, label: str) -> None:
     """Press a button once it can be pressed."""
     visitor.wait_until(visitor.button(label).is_enabled, f"{label} can be pressed")
@@ -66,6 +75,21 @@ def test_a_named_pose_is_planned_shown_and_executed(planner, elbow):
     press(planner, "Execute")
     says(planner, "The robot has arrived.")
     assert elbow() == pytest.approx(READY_RAD, abs=0.05)
+
+
+def test_a_box_in_the_way_is_named_and_fails_the_plan(planner):
+    planner.page.get_by_text("Planning scene", exact=True).click()
+    enter(planner, "Size", "0.1 0.1 0.1")
+    enter(planner, "Position", HOME_M)
+    press(planner, "Add")
+    choose(planner, "Pose", "home")
+    says(planner, "The goal is in collision: ")
+    assert "box1" in planner.page.get_by_text("The goal is in collision: ").first.inner_text()
+    press(planner, "Plan")
+    says(planner, "(GOAL_IN_COLLISION)")
+    press(planner, "Remove")
+    planner.page.get_by_text("The goal is in collision: ").first.wait_for(state="hidden")
+    says(planner, "The planning scene has no objects.")
 
 
 def test_a_plan_of_another_program_is_shown(planner, client):
