@@ -11,7 +11,7 @@ from arm_sim.user_traceback import ends_at_the_caller
 ResultT = TypeVar("ResultT", bound=GoalEnd)
 
 
-class GoalController(Protocol):
+class _GoalCore(Protocol):
     """A controller's core that starts goals and reports their ends to a sink."""
 
     name: str
@@ -40,7 +40,7 @@ class Goal(Generic[ResultT]):
         feedback: the latest feedback of a trajectory; None before the first.
     """
 
-    def __init__(self, controller: GoalController, goal_id: int) -> None:
+    def __init__(self, controller: _GoalCore, goal_id: int) -> None:
         self.controller = controller.name
         self.end: ResultT | None = None
         self.feedback: Any = None
@@ -77,7 +77,7 @@ class Goal(Generic[ResultT]):
 class RunningGoals:
     """Takes the results of one controller's goals; it is the controller's sink."""
 
-    def __init__(self, controller: GoalController) -> None:
+    def __init__(self, controller: _GoalCore) -> None:
         """Become the sink of a controller that is not active yet."""
         self._controller = controller
         self._numbers: Iterator[int] = count(1)
