@@ -329,6 +329,7 @@ def test_the_page_continues_when_the_simulation_restarts(
     banner.get_by_text("The simulation has ended").wait_for()
     launch_for_file("camera:=none").wait_until_ready()
     banner.wait_for(state="hidden")
+    visitor.page.locator("#arm-bar.arm-playing").wait_for()
     states = client.subscribe(JointState, "/joint_states")
 
     def moved() -> bool:
