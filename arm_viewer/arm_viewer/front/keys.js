@@ -6,7 +6,7 @@
     { shown: "→", about: "one step", key: "ArrowRight", repeats: true, act: () => step(1) },
     { shown: ".", about: "one step", key: ".", repeats: true, act: () => step(1) },
     { shown: "Shift →", about: "10 steps", key: "ArrowRight", shift: true, repeats: true, act: () => step(10) },
-    { shown: "Ctrl →", about: "100 steps", key: "ArrowRight", ctrl: true, repeats: true, act: () => step(100) },
+    { shown: "Ctrl →", about: "100 steps", key: "ArrowRight", ctrl: true, act: () => step(100) },
     { shown: "↑", about: "faster", key: "ArrowUp", act: () => armTime.faster(1) },
     { shown: "↓", about: "slower", key: "ArrowDown", act: () => armTime.faster(-1) },
     { shown: "R", about: "reset everything and the clock", key: "r", act: () => armTime.reset(false) },
@@ -23,6 +23,9 @@
   const FIELDS = "input, textarea, select, [contenteditable=''], [contenteditable=true], [role=textbox]";
   const OWN_ARROWS = "[role=slider], [role=tab], [role=radio], [role=menuitem], [role=option], [role=separator]";
   const OWN_SPACE = "button, a, summary, [role=button], [role=tab]";
+
+  const REPEAT_MS = 100;
+  let acted = 0;
 
   function step(count) {
     armTime.press(`[data-steps="${count}"]`);
@@ -76,7 +79,9 @@
       if (!found || isTaken(event)) return;
       event.preventDefault();
       event.stopImmediatePropagation();
-      if (!event.repeat || found.repeats) found.act();
+      if (event.repeat && (!found.repeats || event.timeStamp - acted < REPEAT_MS)) return;
+      acted = event.timeStamp;
+      found.act();
     },
     true,
   );

@@ -33,11 +33,10 @@ from arm_viewer.snapshot import ControlAnswer
 ANSWER_S = 10.0
 """A request without an answer within this time is given up; restoring a world takes seconds."""
 RESULT_OK = 1
-STEP = "/step_simulation"
 SET_PARAMETERS = "/arm_gazebo/set_parameters"
 SERVICES = {
     "/set_simulation_state": SetSimulationState,
-    STEP: StepSimulation,
+    "/step_simulation": StepSimulation,
     SET_PARAMETERS: SetParameters,
     "/reset_simulation": ResetSimulation,
     "/save_snapshot": LoadWorld,
@@ -104,10 +103,8 @@ class RunCommander:
             )
 
     def serve(self, request: RunRequest) -> None:
-        """Call the simulation; of several steps in succession only those that it keeps up with."""
+        """Call the simulation, which serves steps one after another."""
         service, question = _call_of(request)
-        if service == STEP and any(call.service == STEP for call in self._pending):
-            return
         client = self._clients.get(service)
         if client is None or not client.service_is_ready():
             self._answers.add(f"There is no simulation that serves {service}", False)
@@ -142,7 +139,7 @@ def _call_of(request: RunRequest) -> tuple[str, Any]:
             question = SetSimulationState.Request(state=SimulationState(state=state))
             return "/set_simulation_state", question
         case StepRun(count):
-            return STEP, StepSimulation.Request(steps=count)
+            return "/step_simulation", StepSimulation.Request(steps=count)
         case SetSpeed(factor):
             value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=factor)
             return SET_PARAMETERS, SetParameters.Request(
