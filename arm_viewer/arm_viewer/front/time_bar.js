@@ -43,14 +43,15 @@ A button that cannot act now keeps its focus and says why. What is older than tw
   }
 
   function reason(needs) {
-    if (!contact) return "No contact with the page's process";
-    return isFresh() ? bar.reasons[needs] : "The page's process has not answered for two seconds";
+    if (!contact || bar === null) return "No contact with the page's process";
+    // Old news are greyed, but no reason not to try.
+    return bar.reasons[needs];
   }
 
   function showButtons() {
     for (const button of document.querySelectorAll("#arm-bar [data-needs]")) {
       // The emergency stop is never greyed for want of news.
-      const why = button.id === "arm-stop" && !isFresh() ? "" : reason(button.dataset.needs);
+      const why = button.id === "arm-stop" && !contact ? "" : reason(button.dataset.needs);
       button.title = why || button.dataset.hint;
       if (button.tagName === "SELECT") button.disabled = Boolean(why);
       else button.setAttribute("aria-disabled", String(Boolean(why)));
