@@ -29,6 +29,7 @@ def turn_to(planning, request_of, joint_goal, joints):
 @pytest.fixture
 def at_the_start(planning, turn_to):
     """Move the arm to the start of a turn, whatever was before."""
+    planning.stands_still()
     ended = planning.move(turn_to(-1.0))
     assert ended.result.error_code.val == SUCCESS, ended.result.error_code.message
 
@@ -102,26 +103,6 @@ def test_many_goals_at_once_can_all_be_cancelled(planning, at_the_start, turn_to
         goal.cancel()
     ends = [goal.end() for goal in goals]
     assert {(end.status, end.result.error_code.val) for end in ends} == {(CANCELED, PREEMPTED)}
-
-
-def test_a_plan_is_made_while_the_arm_moves(planning, at_the_start, turn_to):
-    moving = planning.start_move(turn_to(1.0, **SLOW))
-    planning.joint_moves(TURN, by=0.05)
-    planned = planning.move(turn_to(0.4), plan_only=True)
-    assert (planned.status, planned.result.error_code.val) == (SUCCEEDED, SUCCESS)
-    # It can still be cancelled: the plan has not waited for its end.
-    moving.cancel()
-    assert moving.end().status == CANCELED
-
-
-def test_a_waiting_goal_that_is_cancelled_ends_while_the_arm_moves(planning, at_the_start, turn_to):
-    moving = planning.start_move(turn_to(1.0, **SLOW))
-    planning.joint_moves(TURN, by=0.05)
-    waiting = planning.start_move(turn_to(0.4))
-    waiting.cancel()
-    assert waiting.end().status == CANCELED
-    moving.cancel()
-    assert moving.end().status == CANCELED
 
 
 def test_a_plan_is_executed_on_its_own(planning, at_the_start, turn_to):
