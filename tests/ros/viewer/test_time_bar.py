@@ -233,44 +233,6 @@ def test_a_stop_from_elsewhere_is_shown(bar, client):
     bar.button("Emergency stop").wait_for()
 
 
-def test_keys_act_but_not_while_one_types(bar, stopped):
-    time_s = bar.pause()
-    bar.page.keyboard.press(".")
-    bar.until(lambda: bar.time_s > time_s, "a step")
-    bar.page.keyboard.press("Shift+ArrowRight")
-    bar.shows_time(time_s + 11 * PERIOD_S)
-    bar.click("Snapshots")
-    bar.element("name").press_sequentially("a . r")
-    assert bar.element("name").input_value() == "a . r"
-    assert bar.element("state").inner_text() == "Paused"
-    bar.page.keyboard.press("Escape")
-    bar.element("snapshot-menu").wait_for(state="hidden")
-    bar.page.keyboard.press("?")
-    bar.page.get_by_text("reset, and keep the clock").wait_for()
-    bar.page.keyboard.press("Escape")
-    bar.element("keys").wait_for(state="hidden")
-    # So far the key only closed what lay above the page.
-    stopped.wait_until(lambda m: m and not m[-1].data, "no stop")
-    bar.page.keyboard.press("Space")
-    bar.shows("state", "^Playing$")
-    bar.page.keyboard.press("Escape")
-    bar.button("Stopped").wait_for()
-    bar.click("Release stop")
-    bar.click("Confirm release")
-    bar.button("Emergency stop").wait_for()
-    assert bar.time_s > time_s + 11 * PERIOD_S
-
-
-def test_all_of_it_is_in_the_command_palette(bar):
-    bar.pause()
-    bar.page.keyboard.press("Control+k")
-    search = bar.page.get_by_placeholder("Search commands...")
-    search.fill("pause or play")
-    bar.page.locator(".mantine-Spotlight-action", has_text="Pause or play").wait_for()
-    search.press("Enter")
-    assert bar.shows("state", "^Playing$") == "Playing"
-
-
 def test_on_a_phone_the_stop_is_under_the_thumb_and_the_bar_has_two_lines(phone):
     bar = phone.page.locator("#arm-bar").bounding_box()
     assert bar["height"] < 100
