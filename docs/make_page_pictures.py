@@ -1,4 +1,4 @@
-"""Makes the manual's pictures of the page: the arm beside its camera, and what is inside its links.
+"""Makes the manual's pictures of the page: the arm, what is inside its links, and a plan.
 
     python docs/make_page_pictures.py
 
@@ -25,25 +25,9 @@ PORT = 18082
 TIMEOUT_MS = 240_000
 MOVING_MS = 3_000
 """Time in which the arm reaches its pose and the charts show the motion."""
-FRAMES = 4
-"""Frames to draw before a screenshot, so that the latest messages are shown."""
 POSE = "data: [-0.9, 0.5, 0.7, 0.9]"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 SOFTWARE_GL = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader")
-FRAMES_ON_DEMAND = """
-const frame = window.requestAnimationFrame.bind(window);
-const waiting = new Map();
-let count = 0;
-window.requestAnimationFrame = (draw) => (waiting.set(++count, draw), count);
-window.cancelAnimationFrame = (number) => waiting.delete(number);
-window.drawFrame = () => new Promise((done) => frame((now) => {
-  const draws = [...waiting.values()];
-  waiting.clear();
-  draws.forEach((draw) => draw(now));
-  done();
-}));
-"""
-"""Draws only on request: software rendering takes seconds a frame and would delay clicks."""
 
 
 @contextlib.contextmanager
@@ -64,13 +48,12 @@ def open_page(page: Page) -> None:
         with contextlib.suppress(OSError), urllib.request.urlopen(url, timeout=5):
             break
         page.wait_for_timeout(500)
-    page.add_init_script(FRAMES_ON_DEMAND)
-    page.goto(url)
+    page.goto(f"{url}/?fixedDpr=1")
+    page.locator(".mantine-Slider-root").first.wait_for()
+    page.wait_for_timeout(MOVING_MS)
     warning = page.locator(".mantine-Notification-closeButton")
-    for awaited in (page.get_by_text("j3", exact=True).first, warning):
-        while not awaited.count():
-            page.evaluate("drawFrame()")
-    warning.dispatch_event("click")
+    if warning.count():
+        warning.first.dispatch_event("click")
 
 
 def take(page: Page, name: str, *ticked: str) -> None:
@@ -78,10 +61,28 @@ def take(page: Page, name: str, *ticked: str) -> None:
     for label in ticked:
         page.get_by_role("checkbox", name=label, exact=True).dispatch_event("click")
     page.wait_for_timeout(MOVING_MS)
-    for _ in range(FRAMES):
-        page.evaluate("drawFrame()")
-        page.wait_for_timeout(200)
     page.screenshot(path=str(IMAGES / name))
+
+
+def take_the_arm(page: Page) -> None:
+    """Take the arm of the course beside its camera, and what is inside its links."""
+    open_page(page)
+    topic = "/position_controller/commands"
+    command = ("topic", "pub", "--once", topic, "std_msgs/msg/Float64MultiArray", POSE)
+    with running(*command):
+        take(page, "page.png")
+    take(page, "page_inside.png", "Collision", "Frames", "Inertia")
+
+
+def take_a_plan(page: Page) -> None:
+    """Take a plan of the myCobot to a named pose."""
+    open_page(page)
+    page.get_by_role("tab", name="Planning").click()
+    page.locator("input[value='choose...']").first.click()
+    page.get_by_role("option", name="ready").first.click()
+    page.get_by_role("button", name="Plan", exact=True).click()
+    page.get_by_text("planned in").wait_for()
+    take(page, "page_planning.png")
 
 
 def main() -> None:
@@ -89,19 +90,19 @@ def main() -> None:
     browser_path = next(filter(None, map(shutil.which, BROWSERS)), None)
     if browser_path is None:
         raise SystemExit(f"none of {', '.join(BROWSERS)} is installed: apt install chromium")
-    arguments = ("viewer:=true", f"viewer_port:={PORT}", "world:=objects", "camera:=side")
-    with running("launch", *arguments), sync_playwright() as playwright:
+    with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=browser_path, args=SOFTWARE_GL, timeout=TIMEOUT_MS
         )
-        page = browser.new_page(viewport=SIZE)
-        page.set_default_timeout(TIMEOUT_MS)
-        open_page(page)
-        topic = "/position_controller/commands"
-        command = ("topic", "pub", "--once", topic, "std_msgs/msg/Float64MultiArray", POSE)
-        with running(*command):
-            take(page, "page.png")
-        take(page, "page_inside.png", "Collision", "Frames", "Inertia")
+        for take_pictures, arguments in (
+            (take_the_arm, ("world:=objects", "camera:=side")),
+            (take_a_plan, ("mycobot", "planning:=true")),
+        ):
+            page = browser.new_page(viewport=SIZE)
+            page.set_default_timeout(TIMEOUT_MS)
+            with running("launch", *arguments, "viewer:=true", f"viewer_port:={PORT}"):
+                take_pictures(page)
+            page.close()
         browser.close()
 
 
