@@ -52,6 +52,7 @@ def call(options: argparse.Namespace) -> None:
     with connect() as session:
         client = session.node.create_client(class_, session.full_name(options.service_name))
         _wait_for_server(session, client, type_.full_name, options.timeout)
+        session.be_known_to_server(client.srv_name)
         while True:
             start_s = time.monotonic()
             filled.stamp(session.node.get_clock().now().to_msg())

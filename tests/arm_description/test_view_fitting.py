@@ -41,7 +41,7 @@ def test_a_robot_of_any_size_fills_the_picture(size, aspect):
 
 def test_what_is_near_a_robot_is_in_the_picture_and_what_is_large_or_far_is_not():
     robot = Body((-0.1, -0.1, 0.0), (0.1, 0.1, 0.6))
-    near = Body((0.4, 0.4, 0.0), (0.5, 0.5, 0.1))
+    near = Body((0.3, 0.3, 0.0), (0.4, 0.4, 0.1))
     wall, far = Body((-9.0, 3.0, 0.0), (9.0, 3.1, 3.0)), Body((8.0, 8.0, 0.0), (8.1, 8.1, 0.1))
     view = fit_view([robot], [near, wall, far], nothing_blocks, FOV_RAD, 1.0)
     seen = np.abs(pixels(view, np.concatenate([robot.corners, near.corners]), 1.0)).max()

@@ -19,7 +19,6 @@ from arm_cli.messages.filling import FilledMessage
 from arm_cli.messages.text import to_yaml
 from arm_cli.output import say, say_document
 from arm_cli.ros.session import CommandSession
-from arm_node.testing import DiscoveryCheck
 
 WAIT_S = 1.0
 """How long a reason may arrive after the response, on another connection."""
@@ -90,7 +89,6 @@ class RefusalListener:
 
 
 CANCEL_TIMEOUT_S = 5.0
-KNOWN_TIMEOUT_S = 3.0
 
 _STATUS_NAMES = {
     GoalStatus.STATUS_ACCEPTED: "ACCEPTED",
@@ -126,16 +124,8 @@ class GoalSender:
         return self._client.server_is_ready()
 
     def wait_until_known(self) -> None:
-        """Wait until the server has discovered this client.
-
-        An answer that a server sends earlier is lost, and a goal must not be sent twice. A server
-        that does not answer the question is sent the goal all the same.
-        """
-        check = DiscoveryCheck.with_server(self._session.node, f"{self.name}/_action/send_goal")
-        try:
-            self._session.wait_until(lambda: check.complete, timeout_s=KNOWN_TIMEOUT_S)
-        finally:
-            check.close()
+        """Wait until the server has discovered this client."""
+        self._session.be_known_to_server(f"{self.name}/_action/send_goal")
 
     def send(
         self, goal: FilledMessage, with_feedback: bool, timeout_s: float | None = None

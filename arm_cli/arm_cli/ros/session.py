@@ -33,6 +33,7 @@ from arm_node.workarounds.discovery import first_node
 from arm_node.workarounds.private_files import made_private
 
 POLL_S = 0.02
+KNOWN_TIMEOUT_S = 3.0
 NOTICE_AFTER_S = 1.0
 """After this time of waiting, the user is told what the command waits for."""
 ACKNOWLEDGE_TIMEOUT_S = 1.0
@@ -83,6 +84,23 @@ class CommandSession:
         self._executor.spin_once(timeout_sec=timeout_s)
         if self._stopped_by is not None:
             raise StoppedError(self._stopped_by)
+
+    def be_known_to_server(self, service: str) -> None:
+        """Wait until the server of a service has discovered this node's end points.
+
+        An answer that a server sends earlier is lost, and a request must not be sent twice. A
+        server that does not answer the question is sent the request all the same.
+
+        Args:
+            service: fully qualified name.
+        """
+        from arm_node.testing import DiscoveryCheck
+
+        check = DiscoveryCheck.with_server(self.node, service)
+        try:
+            self.wait_until(lambda: check.complete, timeout_s=KNOWN_TIMEOUT_S)
+        finally:
+            check.close()
 
     def wait_until(
         self,

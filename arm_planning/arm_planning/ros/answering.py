@@ -48,7 +48,7 @@ def offer_service(
     group: CallbackGroup | None = None,
     limit: BusyLimit | None = None,
 ) -> None:
-    """Offer a service; all of move_group's are made here, so that each of them answers.
+    """Offer a service; all of this package are made here, so that each of them answers.
 
     Args:
         node: gets the service.

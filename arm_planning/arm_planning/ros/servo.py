@@ -19,6 +19,7 @@ from std_srvs.srv import SetBool
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import PlanningError
 from arm_planning.robot.model import JointPositions
+from arm_planning.ros.answering import offer_service
 from arm_planning.ros.convert import NANOSECONDS, pose_of, seconds, vector_of
 from arm_planning.ros.joint_state_monitor import JointStateMonitor
 from arm_planning.ros.robot_setup import PlanningSetup
@@ -83,8 +84,8 @@ class JogServer:
         node.create_subscription(TwistStamped, "~/delta_twist_cmds", self._take_twist, DEPTH)
         node.create_subscription(JointJog, "~/delta_joint_cmds", self._take_joints, DEPTH)
         node.create_subscription(PoseStamped, "~/pose_target_cmds", self._take_pose, DEPTH)
-        node.create_service(ServoCommandType, "~/switch_command_type", self._switch)
-        node.create_service(SetBool, "~/pause_servo", self._pause)
+        offer_service(node, ServoCommandType, "~/switch_command_type", self._switch)
+        offer_service(node, SetBool, "~/pause_servo", self._pause)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         poll_s = settings.publish_period_s / POLLS
         self._polling = node.create_timer(poll_s, self._go_on, clock=steady, autostart=False)

@@ -164,8 +164,7 @@ class SharedMemoryLedger:
     read them: a process hides what it makes, but not a port of its own that a sender made anew.
 
     Args:
-        is_ours: tells whether a process id belongs to a supervised process, to a descendant or to
-            a probe.
+        is_ours: tells whether a process id belongs to a supervised process or a descendant.
         folder: where the segments are.
     """
 

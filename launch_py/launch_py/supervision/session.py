@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from launch_py.fast_dds.removal import SharedMemoryLedger
-from launch_py.fast_dds.shared_memory import watch_folder
+from launch_py.fast_dds.shared_memory import hide, segments_of, watch_folder
 from launch_py.plan.steps import LaunchPlan
 from launch_py.screen import PlainScreen, ReadySummary, Screen, TerminalScreen
 from launch_py.screen.log_folder import DEFAULT_LIMIT_BYTES, LogFolder
@@ -177,7 +177,7 @@ class _LaunchSession:
             self._environ,
             logs,
             self._probes,
-            self._ledger.observe,
+            self._look_at_segments,
             self._settled,
         )
         self._names = NameGuard(self._loop, self._probes, runner, self._reporter, options.replace)
@@ -289,7 +289,7 @@ class _LaunchSession:
 
     def _settled(self) -> None:
         """Release the resources of the start-up, because everything is ready."""
-        self._ledger.observe()
+        self._look_at_segments()
         self._probes.close_idle()
         self._names.settled()
 
@@ -328,7 +328,7 @@ class _LaunchSession:
 
     def _is_ours(self, pid: int) -> bool:
         session = linux.session_of(pid)
-        return pid in self._probes.pids or any(
+        return any(
             m.child is not None and m.child.pid == session
             for m in self._supervisor.processes.values()
         )
@@ -336,7 +336,12 @@ class _LaunchSession:
     def _segments_appeared(self, inotify: int) -> None:
         os.read(inotify, 65536)
         for delay_s in OBSERVE_DELAYS_S:
-            self._loop.call_later(delay_s, self._ledger.observe)
+            self._loop.call_later(delay_s, self._look_at_segments)
+
+    def _look_at_segments(self) -> None:
+        self._ledger.observe()
+        if probes := self._probes.pids:
+            hide(segments_of(probes.__contains__))
 
     def _take_notification(self, pid: int, fields: dict[str, str]) -> None:
         session = linux.session_of(pid)
