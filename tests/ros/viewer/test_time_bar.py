@@ -122,6 +122,12 @@ class Bar:
 
 
 @pytest.fixture
+def client(client_for_file):
+    """One client for the file: a new one would have to be discovered beside a busy browser."""
+    return client_for_file
+
+
+@pytest.fixture
 def state(client):
     """Return a function that asks the simulation for its state."""
     from simulation_interfaces.srv import GetSimulationState
