@@ -33,6 +33,7 @@ class Session:
     def __init__(self) -> None:
         self.node = self
         self.sent: list[Time] = []
+        self.known_to: list[str] = []
 
     def full_name(self, name):
         return name
@@ -46,7 +47,11 @@ class Session:
     def now(self):
         return SimpleNamespace(to_msg=lambda: Time(sec=7 + len(self.sent)))
 
+    def be_known_to_server(self, service):
+        self.known_to.append(service)
+
     def call_async(self, request):
+        assert self.known_to == [self.srv_name]
         self.sent.append(request.time)
 
     def result(self, *_):
