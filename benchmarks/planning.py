@@ -87,24 +87,33 @@ def ours(given: Cell, model: CollisionModel, limit_s: float = LIMIT_S) -> Plan:
     return plan
 
 
-def peer(given: Cell, model: CollisionModel) -> Plan:
+def ompl_setup(
+    given: Cell, model: CollisionModel, start: np.ndarray, goal: np.ndarray
+) -> ompl.geometric.SimpleSetup:
+    """Return a problem for OMPL's planners, with MoveIt's fraction."""
     group = given.arm.model.group(GROUP)
     count = len(group.joints)
+    space = ompl.base.RealVectorStateSpace(count)
+    bounds = ompl.base.RealVectorBounds(count)
+    for index, limits in enumerate(group.limits):
+        bounds.setLow(index, limits.lower)
+        bounds.setHigh(index, limits.upper)
+    space.setBounds(bounds)
+    space.setLongestValidSegmentFraction(FRACTION)
+    setup = ompl.geometric.SimpleSetup(space)
+    setup.setStateValidityChecker(lambda state: model.is_free(np.array(state[0:count])))
+    first, last = space.allocState(), space.allocState()
+    first[0:count], last[0:count] = start.tolist(), goal.tolist()
+    setup.setStartAndGoalStates(first, last)
+    return setup
+
+
+def peer(given: Cell, model: CollisionModel) -> Plan:
+    count = len(given.arm.model.group(GROUP).joints)
 
     def plan(start: np.ndarray, goal: np.ndarray, seed: int) -> np.ndarray | None:
         ompl.util.RNG.setSeed(seed + 1)
-        space = ompl.base.RealVectorStateSpace(count)
-        bounds = ompl.base.RealVectorBounds(count)
-        for index, limits in enumerate(group.limits):
-            bounds.setLow(index, limits.lower)
-            bounds.setHigh(index, limits.upper)
-        space.setBounds(bounds)
-        space.setLongestValidSegmentFraction(FRACTION)
-        setup = ompl.geometric.SimpleSetup(space)
-        setup.setStateValidityChecker(lambda state: model.is_free(np.array(state[0:count])))
-        first, last = space.allocState(), space.allocState()
-        first[0:count], last[0:count] = start.tolist(), goal.tolist()
-        setup.setStartAndGoalStates(first, last)
+        setup = ompl_setup(given, model, start, goal)
         setup.setPlanner(ompl.geometric.RRTConnect(setup.getSpaceInformation()))
         end_s = time.process_time() + LIMIT_S
         setup.solve(ompl.base.PlannerTerminationCondition(lambda: time.process_time() > end_s))

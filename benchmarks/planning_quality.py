@@ -27,7 +27,7 @@ import numpy as np
 import ompl.base
 import ompl.geometric
 import ompl.util
-from planning import FRACTION, ours
+from planning import ompl_setup, ours
 from planning_problems import GROUP, SCENES, Arm, Cell, arms, cell
 
 from arm_node.rigid_transform import RigidTransform
@@ -84,22 +84,10 @@ def shortest(
     limit_s: float,
 ) -> float:
     """Return the length of RRT*'s shortest path of some runs; infinite if there is none."""
-    group, best = given.arm.model.group(GROUP), np.inf
-    count = len(group.joints)
+    best = np.inf
     for run in range(runs):
         ompl.util.RNG.setSeed(run + 1)
-        space = ompl.base.RealVectorStateSpace(count)
-        bounds = ompl.base.RealVectorBounds(count)
-        for index, limits in enumerate(group.limits):
-            bounds.setLow(index, limits.lower)
-            bounds.setHigh(index, limits.upper)
-        space.setBounds(bounds)
-        space.setLongestValidSegmentFraction(FRACTION)
-        setup = ompl.geometric.SimpleSetup(space)
-        setup.setStateValidityChecker(lambda state: model.is_free(np.array(state[0:count])))
-        first, last = space.allocState(), space.allocState()
-        first[0:count], last[0:count] = start.tolist(), goal.tolist()
-        setup.setStartAndGoalStates(first, last)
+        setup = ompl_setup(given, model, start, goal)
         setup.setPlanner(ompl.geometric.RRTstar(setup.getSpaceInformation()))
         end_s = time.process_time() + limit_s
         setup.solve(

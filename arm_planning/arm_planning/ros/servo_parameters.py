@@ -2,11 +2,11 @@
 
 import logging
 from collections.abc import Iterator
-from difflib import get_close_matches
 
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 
+from arm_node.names import describe_known
 from arm_node.parameter_values import Reader, Value, read_parameter
 from arm_node.parameters import declare_typed, type_of
 from arm_node.setting import read_settings, settings_of
@@ -61,6 +61,4 @@ def unknown_names(names: set[str]) -> Iterator[str]:
     for name in sorted(names - known):
         if name.partition(".")[0] in NOT_USED.split():
             continue
-        near = get_close_matches(name, known, 1)
-        hint = f"; did you mean {PREFIX}.{near[0]}?" if near else ""
-        yield f"there is no parameter {PREFIX}.{name}{hint}"
+        yield f"there is no parameter {PREFIX}.{name}; {describe_known(name, known)}"
