@@ -50,7 +50,7 @@ def way_points(draw: Callable, degree: int | None = None) -> tuple[np.ndarray, n
 
 @st.composite
 def profiles(draw: Callable, degree: int | None = None) -> SplineProfile:
-    """A profile from a start of any knowledge, perhaps begun in the past or for the future."""
+    """A profile from a start whose rates may be unknown; it begins in the past or the future."""
     times, points = draw(way_points(degree))
     offset = draw(st.floats(-times[-1], 5.0))
     return SplineProfile(
