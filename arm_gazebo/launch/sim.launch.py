@@ -11,6 +11,7 @@ from launch_py import (
     Action,
     AppendEnvironmentVariable,
     DeclareLaunchArgument,
+    Finished,
     IncludeLaunchDescription,
     LaunchDescription,
     LogInfo,
@@ -80,6 +81,31 @@ def robot_arguments() -> list[DeclareLaunchArgument]:
             "copy_spacing",
             default_value="1.0",
             description="distance of neighbours on that grid, in m; the first is at `pose`",
+        ),
+    ]
+
+
+def hardware_arguments() -> list[DeclareLaunchArgument]:
+    """Return the arguments about a real arm in place of the simulation."""
+    return [
+        DeclareLaunchArgument(
+            "hardware",
+            default_value="simulation",
+            description="what the controllers drive: simulation, mock, feetech, mycobot_280, or a "
+            "plugin, such as my_package/MyServos",
+        ),
+        DeclareLaunchArgument(
+            "port", default_value="", description="serial port of a real arm, such as /dev/ttyUSB0"
+        ),
+        DeclareLaunchArgument(
+            "calibration",
+            default_value="",
+            description="calibration file of a real arm, by `arm calibrate` or LeRobot",
+        ),
+        DeclareLaunchArgument(
+            "hardware_args",
+            default_value="",
+            description='other <param>s of the hardware plugin: "a:=1 b:=2"',
         ),
     ]
 
@@ -167,13 +193,21 @@ def nodes(words: Mapping[str, str]) -> list[Action]:
     if words.get("servo") == "true" and words["planning"] == "false":
         raise UsageError("servo:=true needs planning:=true")
     find_world(words["world"])  # The simulation would say so, too, but among what has started.
-    if words["robots"] or words["copies"] != "1":
+    several = words["robots"] or words["copies"] != "1"
+    if words["hardware"] != "simulation" and (several or words["record_run"]):
+        raise UsageError(
+            "hardware:= drives one real arm: leave out robots:=, copies:= and record_run:=; "
+            "`arm bag record` records it"
+        )
+    if several:
         if words["planning"] == "true":
             raise UsageError("planning:=true plans for one robot; leave out robots:= and copies:=")
         robots = robots_of(words)
         panel = [] if words["robots"] else [panel_of(list(robots))]
         return [*simulate_several(robots), *panel]
     setup = single_robot(words)
+    if words["hardware"] != "simulation":
+        return real_robot(words, setup)
     place = {name: LaunchConfiguration(name) for name in ("base", "pose")}
     return [
         *(LogInfo(msg=remark) for remark in setup.remarks),
@@ -232,6 +266,42 @@ def simulate_several(robots: "Mapping[str, PlacedRobot]") -> list[Action]:
         remarks += [LogInfo(msg=f"{name}: {remark}") for remark in setup.remarks]
     missing = left_out({f"{name}: ": robot.setup.left_out for name, robot in robots.items()})
     return [simulation(settings, controllers), *remarks, *missing, state_publishers(descriptions)]
+
+
+def real_robot(words: Mapping[str, str], setup: "RobotSetup") -> list[Action]:
+    """Return the nodes of a robot on other hardware, at the time of the system."""
+    from arm_description.xacro.expansion import arguments_of_text
+    from arm_gazebo.launching.real_hardware import on_hardware
+
+    given = {name: words[name] for name in ("port", "calibration") if words[name]}
+    parameters = {**given, **arguments_of_text(words["hardware_args"])}
+    description = on_hardware(setup.description, words["hardware"], parameters)
+    manager = Node(
+        package="arm_control",
+        executable="ros2_control_node",
+        namespace=words["namespace"],
+        parameters=[setup.controllers],
+        ros_arguments=["--log-level", LaunchConfiguration("log_level")],
+        ready=Notified(),
+        on_exit=Shutdown(),
+    )
+    spawner = Node(
+        package="arm_control",
+        executable="spawner",
+        namespace=words["namespace"],
+        arguments=list(setup.spawn),
+        ready=Finished(),
+        depends_on=manager,
+    )
+    return [
+        SetLaunchConfiguration("use_sim_time", "false"),
+        *(LogInfo(msg=remark) for remark in setup.remarks),
+        *left_out({"": setup.left_out}),
+        state_publisher(publisher_parameters(description), words["namespace"]),
+        manager,
+        *([spawner] if setup.spawn else []),
+        SetLaunchConfiguration("planning_description", description),
+    ]
 
 
 def left_out(sentences: Mapping[str, str]) -> list[Action]:
@@ -325,6 +395,7 @@ def generate_launch_description() -> LaunchDescription:
             ),
             *robot_arguments(),
             *(DeclareLaunchArgument(each.name, **each.launch_argument) for each in SIMULATION),
+            *hardware_arguments(),
             *node_arguments(),
             DeclareLaunchArgument(
                 "rviz_config_file",

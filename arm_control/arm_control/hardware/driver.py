@@ -2,7 +2,8 @@
 
 import logging
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Protocol, runtime_checkable
 
@@ -142,6 +143,28 @@ class SingleModeHardware(Protocol):
     """
 
     modes: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class HardwareHealth:
+    """What a driver knows about its own health.
+
+    Attributes:
+        problem: sentences for the user; empty if there is none.
+        values: figures and states by name, for those who search a fault.
+    """
+
+    problem: str = ""
+    values: Mapping[str, str] = field(default_factory=dict)
+
+
+@runtime_checkable
+class SelfDiagnosing(Protocol):
+    """Hardware that knows its own faults: a driver may have this method."""
+
+    def health(self) -> HardwareHealth:
+        """Return its health, for /diagnostics; any thread, without waiting."""
+        ...
 
 
 @runtime_checkable

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 
 from arm_control.controllers.loaned_interfaces import describe_unmeasured
+from arm_control.hardware.driver import SelfDiagnosing
 from arm_control.lifecycle import LifecycleState
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.supervision import RunRecord, Spread
@@ -172,6 +173,12 @@ class ManagerDiagnostics:
         else:
             report.merge(Level.OK, _how_many(active, len(components), "hardware components"))
         self._check_states(report)
+        for component in self._manager.resources.components.values():
+            if isinstance(component.hardware, SelfDiagnosing):
+                health = component.hardware.health()
+                report.values |= {f"{component.name}.{k}": v for k, v in health.values.items()}
+                if health.problem:
+                    report.merge(Level.ERROR, f"{component.name}: {health.problem}")
         assessment = _RunAssessment(report, thresholds)
         for status, reads, writes in components:
             report.values[f"{status.name}.state"] = status.state.label

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from arm_sim.errors import BenchError
 
-END_TIMEOUT_S = 20.0
+END_TIMEOUT_S = 60.0
 POLL_S = 0.01
 NAMED = re.compile(r"sys\.argv\[0\] = '([^']+)'")
 """How launch_py names a node that it starts as a Python function."""
@@ -46,19 +46,22 @@ class LoggedProcess:
         self._changed = threading.Condition()
         self._is_closed = False
         try:
-            self.process = subprocess.Popen(
-                list(command),
-                stdin=stdin,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                text=True,
-                errors="replace",
-                env=self.environment,
-            )
+            self.process = self._start(command, stdin)
         except OSError as error:
             raise BenchError(f"{name} cannot start: {error}") from error
         self._reader = threading.Thread(target=self._read, name=f"log of {name}", daemon=True)
         self._reader.start()
+
+    def _start(self, command: Sequence[str], stdin: int) -> "subprocess.Popen[str]":
+        return subprocess.Popen(
+            list(command),
+            stdin=stdin,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            env=self.environment,
+        )
 
     @property
     def log(self) -> str:

@@ -22,6 +22,7 @@ from arm_cli.doctor.installation import (
     check_wheels,
     try_python,
 )
+from arm_node.ros_distribution import ros_distribution
 
 LONG_AGO_S = 1.0e9
 
@@ -91,6 +92,12 @@ def test_a_sourced_ros_that_loads_is_a_warning(shadow, tmp_path):
     environ = shadow("rclpy", "")
     (tmp_path / "rclpy" / "node.py").touch()
     assert check_rclpy(environ).severity is Severity.WARNING
+
+
+def test_the_distribution_is_named(environ):
+    finding = check_rclpy({**environ, "ROS_DISTRO": ros_distribution()})
+    assert finding.severity is Severity.OK
+    assert f"rclpy of ROS 2 {ros_distribution().capitalize()} loads" in finding.sentence
 
 
 def test_another_ros_in_the_shell_is_a_warning(environ):
@@ -223,17 +230,19 @@ def test_missing_shared_memory_is_an_error(tmp_path):
     assert "cannot be written to" in finding.sentence
 
 
-def test_segments_of_dead_processes_are_told_from_those_of_living_ones(tmp_path):
+@pytest.mark.parametrize("prefix", ["fastrtps_", "fastdds_"])
+def test_segments_of_dead_processes_are_told_from_those_of_living_ones(tmp_path, prefix):
     assert check_shared_memory(tmp_path).severity is Severity.OK
-    for name in ("fastrtps_dead", "fastrtps_alive", "fastrtps_new"):
+    for name in (f"{prefix}dead", f"{prefix}alive", f"{prefix}new"):
         (tmp_path / f"{name}_el").touch()
-    for name in ("fastrtps_dead", "fastrtps_alive"):
+    for name in (f"{prefix}dead", f"{prefix}alive"):
         os.utime(tmp_path / f"{name}_el", (LONG_AGO_S, LONG_AGO_S))
-    with open(tmp_path / "fastrtps_alive_el") as lock:
+    with open(tmp_path / f"{prefix}alive_el") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         finding = check_shared_memory(tmp_path)
     assert finding.severity is Severity.WARNING
-    assert "killed ROS processes left 1 segments there, such as fastrtps_dead" in (finding.sentence)
+    assert f"killed ROS processes left 1 segments there, such as {prefix}dead" in finding.sentence
+    assert finding.fix.endswith(f"rm -f {tmp_path}/{prefix}* {tmp_path}/sem.{prefix}*")
 
 
 @pytest.mark.parametrize(

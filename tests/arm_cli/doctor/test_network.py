@@ -13,6 +13,7 @@ import pytest
 from arm_cli.doctor.diagnosis import Severity
 from arm_cli.doctor.installation import OWNER_HEADER, check_page_port
 from arm_cli.doctor.network import check_discovery, check_listening, check_ports, check_users
+from arm_viewer.access import Access
 from arm_viewer.page_server import page_server
 from launch_py.fast_dds.participants import LAST_DOMAIN
 
@@ -137,6 +138,14 @@ def test_the_page_s_port_is_free_or_used_by_a_page(serve):
         found = check_page_port(page.get_port())
     assert found.severity is Severity.OK
     assert "a page is running on http://127.0.0.1:" in found.sentence
+    assert "other machines" not in found.sentence
+
+
+def test_a_page_for_other_machines_is_said_to_be_one():
+    with page_server(0, access=Access.on("0.0.0.0")) as page:
+        found = check_page_port(page.get_port())
+    assert found.severity is Severity.OK
+    assert found.sentence.endswith("; on 0.0.0.0 it serves other machines, with a token")
 
 
 @pytest.mark.parametrize(

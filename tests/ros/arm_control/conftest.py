@@ -11,9 +11,10 @@ from typing import Any
 
 import pytest
 import yaml
-from programs import Program
+from programs import Program, RosProgram
 
-ROOT = Path(__file__).parents[3]
+from launch_py.system.dds_profile import shipped_profile
+
 TIMEOUT_S = 60.0
 
 PARAMETERS = {
@@ -45,9 +46,9 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
             "ROS_LOG_DIR": str(log),
             # Spawners lock the machine there: not that of other sessions.
             "ROS_HOME": str(log.parent),
-            "FASTRTPS_DEFAULT_PROFILES_FILE": str(ROOT / "launch_py/config/dds_profile.xml"),
+            **shipped_profile(os.environ),
         }
-        programs.append(Program([sys.executable, *arguments], environment, subprocess.PIPE))
+        programs.append(RosProgram([sys.executable, *arguments], environment, subprocess.PIPE))
         return programs[-1]
 
     yield start
@@ -131,8 +132,7 @@ class Control:
 
     def call(self, service: str, **fields: Any) -> Any:
         """Call one of its services; a list is asked for again where no answer comes."""
-        if not self._services:
-            self._connect()
+        self.connect()
         client = self._services[service]
         attempts = 6 if service.startswith("list_") else 1
         for _ in range(attempts):
@@ -145,12 +145,14 @@ class Control:
 
     def ask(self, service: str, **fields: Any) -> Any:
         """Call one of its services, and do not wait; return the future of the answer."""
-        if not self._services:
-            self._connect()
+        self.connect()
         client = self._services[service]
         return client.call_async(client.srv_type.Request(**fields))
 
-    def _connect(self) -> None:
+    def connect(self) -> None:
+        """Make clients of its services, unless there are some; wait until it knows them."""
+        if self._services:
+            return
         import controller_manager_msgs.srv
 
         last = "list_controllers"
@@ -223,11 +225,25 @@ def services() -> dict[str, str]:
 
 
 @pytest.fixture
-def control(client: Any, manager: Program) -> Iterator[Control]:
+def client(client_for_file: Any) -> Iterator[Any]:
+    """Return the file's client, from which each test's end points are gone after it."""
+    with client_for_file.tidied():
+        yield client_for_file
+
+
+@pytest.fixture(scope="module")
+def control_for_file(client_for_file: Any, manager: Program) -> Control:
+    """Return a client of the module's manager."""
+    control = Control(client_for_file)
+    control.connect()
+    return control
+
+
+@pytest.fixture
+def control(control_for_file: Control) -> Iterator[Control]:
     """Return a client of the module's manager, which is without controllers before and after."""
-    control = Control(client)
-    yield control
-    control.unload_all()
+    yield control_for_file
+    control_for_file.unload_all()
 
 
 @pytest.fixture

@@ -107,7 +107,7 @@ def application(
     finally:
         server.shutdown()
         loop.stop()
-        loop.join(5.0)
+        loop.join(60.0)
         # An executor that waits for a node that goes has a callback that failed, with a traceback.
         process.join_spinning()
         server.destroy_nodes()

@@ -7,7 +7,7 @@ without the lock, and leaves only the rest to the original function.
 
 The waypoints are found in the C message by their offset. This is tested on a small goal before it
 is used; if the result differs, rclpy converts goals as usual, and the log says so. Works around
-https://github.com/ros2/rclpy/issues/836, made for rclpy 7.1. ARM_WITHOUT knows it as
+https://github.com/ros2/rclpy/issues/836, made for rclpy 7.1 and 9.1. ARM_WITHOUT knows it as
 `serialized_goals`.
 """
 

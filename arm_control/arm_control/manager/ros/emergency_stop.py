@@ -1,6 +1,5 @@
 """The emergency stop over ROS: a service that stops and releases, and topics."""
 
-import logging
 from collections.abc import Sequence
 from typing import Any
 
@@ -20,8 +19,6 @@ from arm_control.manager.controller_manager import ControllerManager
 NAME = "emergency_stop"
 DEPTH = 10
 LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-logger = logging.getLogger("controller_manager")
 
 
 class EmergencyStopServer:

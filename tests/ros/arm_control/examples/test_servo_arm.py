@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import psutil
 import pytest
 
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
@@ -92,14 +91,12 @@ def test_servos_that_were_unplugged_are_used_again(
 ) -> None:
     from lifecycle_msgs.msg import State
 
-    fake = next(
-        process
-        for process in psutil.Process(launched.process.pid).children(recursive=True)
-        if "servo_arm.fake_servo" in " ".join(process.cmdline())
-    )
+    (fake,) = launched.processes("servo_arm.fake_servo")
     fake.kill()
     client.wait_until(lambda: servos(control).state.label == "unconfigured", "the servos are gone")
-    assert set(control.states().values()) == {"inactive"}
+    client.wait_until(
+        lambda: set(control.states().values()) == {"inactive"}, "their controllers stopped"
+    )
 
     # The launcher restarts the fake servos, as if they were plugged in again.
     client.wait_until(

@@ -12,7 +12,7 @@ from arm_control.loop.pacer import Pacer
 
 pytestmark = pytest.mark.ros
 
-TIMEOUT_S = 10.0
+TIMEOUT_S = 60.0
 
 
 @pytest.fixture

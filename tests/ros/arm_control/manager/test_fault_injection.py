@@ -110,7 +110,7 @@ def test_a_blocking_controller_overruns_and_services_still_answer(
         lambda messages: any(
             "cannot keep its pace" in status.message
             or "Controllers with high execution time : [ faulty ]" in status.message
-            for message in messages[-1:]
+            for message in messages
             for status in message.status
         ),
         "a report of the overruns",

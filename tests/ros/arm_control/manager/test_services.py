@@ -12,7 +12,7 @@ INTERFACES = "controller_interface::"
 JOINTS = ("j0", "j1", "j2", "j3")
 COMMANDS = [f"{joint}/position" for joint in JOINTS]
 
-BEST_EFFORT, STRICT = 1, 2
+STRICT = 2
 
 
 def test_the_services_of_a_real_one_are_there(
@@ -167,23 +167,6 @@ def test_an_unknown_strictness_is_refused(control: Any) -> None:
     assert (answer.ok, answer.message) == (False, "unknown strictness 9; it is 1, 2, 3 or 4")
 
 
-def test_switching_to_a_controller_whose_interface_is_taken(control: Any) -> None:
-    control.start("position_controller")
-    control.load("second_controller")
-    control.configure("second_controller")
-    answer = control.switch(["second_controller"])
-    assert answer.message == (
-        "Unable to activate controller 'second_controller' since the command interface "
-        "'j3/position' is currently claimed by another controller."
-    )
-    answer = control.switch(["second_controller"], ["position_controller"], BEST_EFFORT)
-    assert answer.message == (
-        "Successfully switched controllers!\n"
-        "Deactivated controllers: [ position_controller ]\n"
-        "Activated controllers: [ second_controller ]"
-    )
-
-
 def test_hardware_interfaces(control: Any) -> None:
     control.start("second_controller")
     answer = control.call("list_hardware_interfaces")
@@ -295,26 +278,3 @@ def test_reload_unloads_everything_active_controllers_only_by_force(control: Any
     assert control.states()["position_controller"] == "active"
     assert reload(True)
     assert control.states() == {}
-
-
-def test_an_emergency_stop_is_latched_and_no_controller_starts_meanwhile(
-    control: Any, client: Any
-) -> None:
-    from std_srvs.srv import SetBool
-
-    def stop(engaged: bool) -> tuple[bool, str]:
-        request = SetBool.Request(data=engaged)
-        answer = client.call(SetBool, "/emergency_stop", request)
-        return answer.success, answer.message
-
-    assert control.load("position_controller")
-    assert control.configure("position_controller")
-    assert stop(True) == (True, "stopped")
-    assert stop(True) == (True, "already stopped")
-    answer = control.switch(["position_controller"])
-    assert not answer.ok
-    assert answer.message.startswith("the emergency stop is latched")
-    assert stop(False) == (True, "released")
-    assert control.switch(["position_controller"]).ok
-    assert control.switch([], ["position_controller"]).ok
-    assert control.unload("position_controller")

@@ -69,22 +69,3 @@ def test_the_session_goes_as_with_a_real_one(control: Any) -> None:
         (POSITION, "active"),
         ("joint_state_broadcaster", "active"),
     ]
-
-
-def test_inactive_hardware_keeps_controllers_and_claims(control: Any) -> None:
-    from lifecycle_msgs.msg import State
-
-    control.start("joint_state_broadcaster", POSITION)
-    for label in ("inactive", "active"):
-        answer = control.call(
-            "set_hardware_component_state",
-            name="HardwareInterface",
-            target_state=State(label=label),
-        )
-        assert (answer.ok, answer.state.label) == (True, label)
-        assert set(control.states().values()) == {"active"}
-        (component,) = control.call("list_hardware_components").component
-        claimed = {i.name for i in component.command_interfaces if i.is_claimed}
-        assert claimed == {f"{joint}/position" for joint in JOINTS}
-    answer = control.call("set_hardware_component_state", name="nothere", target_state=State(id=3))
-    assert not answer.ok

@@ -23,7 +23,7 @@ def test_it_loads_configures_and_activates_in_order(control: Any, spawn: Any) ->
         "position_controller": "active",
         "joint_state_broadcaster": "active",
     }
-    lines = [line.split("]: ")[-1] for line in spawner.lines]
+    lines = [line.split("]: ")[-1] for line in spawner.own_words]
     # It says so where it has to wait for the manager or to ask it again.
     waits = ("waiting for service ", "no answer from ")
     assert [line for line in lines if not line.startswith(waits)] == [

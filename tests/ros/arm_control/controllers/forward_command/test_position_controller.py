@@ -81,38 +81,3 @@ def test_a_wrong_length_deactivates_it_and_the_log_says_how_to_go_on(
     publish(0.7, 0.0, 0.0, 0.0)
     wait_for(positions, 0.7, 0.0, 0.0, 0.0)
     assert sum(said in line for line in manager.lines) == 1
-
-
-def test_a_command_with_a_nan_is_dropped_with_a_warning(
-    control: Any, positions: Any, publish: Any, manager: Any
-) -> None:
-    publish(0.2, 0.2, 0.2, 0.2)
-    wait_for(positions, 0.2, 0.2, 0.2, 0.2)
-    publish(0.9, float("nan"), 0.9, 0.9)
-    manager.wait_for_line("a command with a NaN or an infinity was dropped: [0.9, nan, 0.9, 0.9]")
-    assert list(positions.wait_for(1)[-1].position) == [0.2, 0.2, 0.2, 0.2]
-    assert control.states()["position_controller"] == "active"
-
-
-def test_an_empty_command_changes_nothing(control: Any, positions: Any, publish: Any) -> None:
-    publish(0.3, 0.3, 0.3, 0.3)
-    wait_for(positions, 0.3, 0.3, 0.3, 0.3)
-    publish()
-    publish(0.4, 0.3, 0.3, 0.3)
-    wait_for(positions, 0.4, 0.3, 0.3, 0.3)
-    assert control.states()["position_controller"] == "active"
-
-
-def test_what_was_sent_while_it_was_inactive_is_not_replayed(
-    control: Any, positions: Any, publish: Any, get_parameter: Any
-) -> None:
-    publish(0.1, 0.1, 0.1, 0.1)
-    wait_for(positions, 0.1, 0.1, 0.1, 0.1)
-    control.switch([], ["position_controller"])
-    publish(0.8, 0.8, 0.8, 0.8)
-    # The node answers this request only after it has received the command.
-    assert get_parameter("/position_controller", "joints") == ["j0", "j1", "j2", "j3"]
-    control.switch(["position_controller"])
-    positions.clear()
-    messages = positions.wait_for(5)
-    assert all(list(message.position) == [0.1, 0.1, 0.1, 0.1] for message in messages)

@@ -65,20 +65,6 @@ def test_a_goal_with_a_fault_can_be_aborted_with_the_reason(
     assert text == "Incoming joint j9 doesn't match the controller's joints."
 
 
-def test_an_inactive_controller_rejects_goals(control: Any, send: Any, manager: Any) -> None:
-    control.load(NAME)
-    control.configure(NAME)
-    assert not send((0.1, THERE)).accepted
-    manager.wait_for_line("Can't accept new action goals. Controller is not running.")
-
-
-def test_a_new_goal_preempts_the_one_before(active: Any, send: Any) -> None:
-    first = send((FOR_EVER_S, THERE))
-    second = send((0.1, THERE))
-    assert first.result() == PREEMPTED
-    assert second.result() == REACHED
-
-
 def test_a_goal_is_preempted_while_paused(active: Any, send: Any, paused: Any) -> None:
     first = send((FOR_EVER_S, THERE))
     paused.tell("pause")
@@ -87,12 +73,6 @@ def test_a_goal_is_preempted_while_paused(active: Any, send: Any, paused: Any) -
     assert not second.ended()
     paused.tell("resume")
     assert second.result() == REACHED
-
-
-def test_a_cancelled_goal_ends_with_an_empty_result(active: Any, send: Any) -> None:
-    goal = send((FOR_EVER_S, THERE))
-    assert goal.cancel() == 1
-    assert goal.result() == (CANCELED, 0, "")
 
 
 def test_a_goal_is_cancelled_while_paused(active: Any, send: Any, paused: Any) -> None:
@@ -106,15 +86,6 @@ def test_a_goal_that_has_ended_cannot_be_cancelled(active: Any, send: Any) -> No
     goal = send((0.1, THERE))
     assert goal.result() == REACHED
     assert goal.cancel() == 0
-
-
-def test_a_goal_off_its_path_is_aborted(active: Any, send: Any) -> None:
-    from control_msgs.msg import JointTolerance
-
-    goal = send(
-        (0.0, (9, 9, 9, 9)), (1.0, HERE), path_tolerance=[JointTolerance(name="j1", position=0.01)]
-    )
-    assert goal.result() == (ABORTED, -4, "Aborted due to path tolerance violation")
 
 
 def test_goals_of_any_length_are_taken(active: Any, send: Any) -> None:

@@ -102,7 +102,7 @@ def test_feedback_follows_simulation_time(control: Any, sender_to: Callable[[str
     control.start("position_commands")
     goal = sender_to("position_commands")((1.0, THERE), (10.0, HOME))
     assert goal.result() == REACHED
-    messages = goal.feedback.messages
+    messages = goal.feedback.wait_for(1)
     ages = [seconds(m.header.stamp) - seconds(m.desired.time_from_start) for m in messages]
     assert ages == pytest.approx([ages[0]] * len(ages), abs=1e-6)
     assert seconds(messages[-1].desired.time_from_start) <= 10.0 + 1e-6

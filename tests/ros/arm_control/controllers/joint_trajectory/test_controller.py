@@ -196,15 +196,6 @@ def test_query_state_returns_future_set_points(
     assert [list(late.velocity), list(late.acceleration)] == [[0.0] * 4] * 2
 
 
-def test_query_state_of_an_inactive_controller_has_no_answer(
-    loaded: Any, query: Any, manager: Any
-) -> None:
-    answer = query(0.0)
-    assert not answer.success
-    assert answer.message == "the controller is not active"
-    assert not answer.name
-
-
 def test_query_state_answers_while_paused(
     active: Any, states: Any, query: Any, manager: Any
 ) -> None:

@@ -1,0 +1,1 @@
+"""Hardware plugins of real arms. None of them was ever tried on a real arm."""
