@@ -9,6 +9,7 @@ NEIGHBOURS = ["../arm_node", "../arm_description"]
 REQUIREMENTS = [
     "mujoco-core[rendering]>=4.0,<5",
     "numpy>=2",
+    "opencv-python-headless>=4.9",
     "ros-jazzy-common-interfaces==5.3.6",
     "ros-jazzy-rclpy[fastrtps]==7.1.6",
 ]
@@ -40,11 +41,19 @@ setup(
         "console_scripts": [
             "move_group = arm_planning.move_group_node:main",
             "servo_node = arm_planning.servo_node:main",
+            "mtc_demo = arm_planning.mtc_demo_node:main",
+            "mtc_node = arm_planning.mtc_node:main",
+            "get_planning_scene_server = arm_planning.get_planning_scene_node:main",
         ],
         "launch_py.packages": [
             "moveit_ros_move_group = arm_planning",
             "moveit_servo = arm_planning",
         ],
-        "launch_py.nodes": ["move_group = move_group", "servo_node = servo_node"],
+        "launch_py.nodes": [
+            "move_group = move_group",
+            "servo_node = servo_node",
+            "mtc_node = mtc_node",
+            "get_planning_scene_server = get_planning_scene_server",
+        ],
     },
 )

@@ -208,10 +208,10 @@ def _plan(
     ahead = np.array([math.cos(heading), math.sin(heading), 0.0])
     place = np.array([task.x, task.y, task.height])
     lifted = np.array([task.x, task.y, task.height + task.lift])
-    grasp = tuple(kinematics.solve(_hand_at(place, ahead), posture).tolist())
+    grasp = tuple(kinematics.solve(hand_at(place, ahead), posture).tolist())
     # Planned in reverse, away from the grasp, where the arm is bent most.
-    away = straight_path(kinematics, grasp, _hand_at(place - APPROACH_M * ahead, ahead), STRAIGHT_S)
-    up = straight_path(kinematics, grasp, _hand_at(lifted, ahead), STRAIGHT_S)
+    away = straight_path(kinematics, grasp, hand_at(place - APPROACH_M * ahead, ahead), STRAIGHT_S)
+    up = straight_path(kinematics, grasp, hand_at(lifted, ahead), STRAIGHT_S)
     return PickPlan(
         task,
         to_object=path_to(away[-1].positions, SWING_S),
@@ -223,7 +223,7 @@ def _plan(
     )
 
 
-def _hand_at(place: Array, ahead: Array) -> Array:
+def hand_at(place: Array, ahead: Array) -> Array:
     """Return the horizontal pose of the hand with a position between the pads."""
     up = np.array([0.0, 0.0, 1.0])
     rotation = np.column_stack([np.cross(ahead, up), ahead, up])

@@ -1,7 +1,8 @@
 """Reads the folder of a MoveIt configuration into move_group's parameters.
 
 The files are those of MoveIt's configuration packages: ROBOT.srdf, kinematics.yaml,
-joint_limits.yaml, pilz_cartesian_limits.yaml, moveit_controllers.yaml and PIPELINE_planning.yaml.
+joint_limits.yaml, pilz_cartesian_limits.yaml, moveit_controllers.yaml, sensors_3d.yaml and
+PIPELINE_planning.yaml.
 """
 
 from collections.abc import Mapping
@@ -17,14 +18,16 @@ SEMANTIC = "robot_description_semantic"
 SERVO = "moveit_servo"
 KINEMATICS = "robot_description_kinematics"
 CONTROLLER_FILES = ("moveit_controllers.yaml", "moveit2_controllers.yaml")
+SENSORS_FILE = "sensors_3d.yaml"
 PIPELINE_SUFFIX = "_planning.yaml"
 
 
-def move_group_parameters(folder: Path) -> dict[str, Any]:
+def move_group_parameters(folder: Path, *, octomap: bool = False) -> dict[str, Any]:
     """Return the parameters that a configuration folder stands for, nested as in YAML.
 
     Args:
         folder: has the files, itself or in its folder `config`. A file that it lacks is left out.
+        octomap: take the sensors that make an octomap, too.
 
     Raises:
         PlanningError: the folder has no such file at all, several SRDFs, or a file is not what it
@@ -48,6 +51,11 @@ def move_group_parameters(folder: Path) -> dict[str, Any]:
         parameters[PLANNING] = limits
     for name in CONTROLLER_FILES:
         parameters.update(_yaml(place / name))
+    if octomap:
+        sensors = _yaml(place / SENSORS_FILE)
+        if not sensors.get("sensors"):
+            raise _refusal(f"octomap:=true needs {place / SENSORS_FILE} with a list of sensors")
+        parameters.update(sensors)
     for path in sorted(place.glob(f"*{PIPELINE_SUFFIX}")):
         parameters[path.name.removesuffix(PIPELINE_SUFFIX)] = _yaml(path)
     if not parameters:

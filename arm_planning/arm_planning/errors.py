@@ -2,6 +2,7 @@
 
 PlanningError            a request that cannot be answered, or a plan that was not found
 ├── SrdfError            an SRDF that cannot be used
+├── PerceptionError      a view in which nothing can be found
 └── MissingOmplError     OMPL is not installed
 """
 
@@ -61,6 +62,13 @@ class SrdfError(PlanningError):
 
     def __init__(self, message: str) -> None:
         super().__init__(MoveItErrorCode.FAILURE, message)
+
+
+class PerceptionError(PlanningError):
+    """A camera's view in which nothing can be found."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(MoveItErrorCode.UNABLE_TO_AQUIRE_SENSOR_DATA, message)
 
 
 class MissingOmplError(PlanningError):

@@ -26,7 +26,8 @@ def application(process: NodeProcess) -> Iterator[None]:
     with group.serving():
         node.get_logger().info("You can start planning now!")
         yield
-        node.destroy_node()
+    # What still runs uses its handles.
+    node.destroy_node()
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -18,6 +18,7 @@ from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.scene_difference import same_posture
 from arm_planning.constraints.constraints import MotionConstraints, joint_goal, pose_goal
 from arm_planning.constraints.evaluation import ConstraintEvaluator, ConstraintResult
+from arm_planning.constraints.joint_goals import snap_to_limits
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.execution.remaining import remaining
 from arm_planning.kinematics.forward import ForwardKinematics, as_rigid_transform
@@ -163,7 +164,7 @@ class Planner:
         trajectory, code = None, MoveItErrorCode.SUCCESS
         try:
             group = self._group(request.group)
-            begin = start_state(self.model, group, scene)
+            begin = start_state(group, scene)
             start = begin.positions
             if begin.remark:
                 remarks.append(begin.remark)
@@ -320,7 +321,7 @@ class Planner:
         """
         scene = scene or self.scene
         own = self._group(group)
-        scene = replace(scene, positions=start_state(self.model, own, scene).positions)
+        scene = replace(scene, positions=start_state(own, scene).positions)
         evaluator = self._evaluator(path, own, scene)
         checker = self.checker(scene, group)
         found = cartesian_path(
@@ -484,7 +485,7 @@ class Planner:
         start = group.positions(scene.positions)
         deadline = Deadline.after(request.allowed_time_s, interrupted)
         goals = GoalSampler(
-            request.goals,
+            tuple(snap_to_limits(goal, group, remark) for goal in request.goals),
             request.path,
             self.model,
             group,
@@ -495,7 +496,6 @@ class Planner:
             start,
             request.seed,
             deadline,
-            remark,
         )
         problem = PlanningProblem(
             group,

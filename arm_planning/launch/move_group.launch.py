@@ -30,11 +30,14 @@ def move_group(context: LaunchContext) -> list[Action]:
     if find_spec("moveit_msgs") is None:
         raise UsageError(INSTALL)
     configured = {}
+    octomap = words["octomap"] == "true"
+    if octomap and not words["moveit_config"]:
+        raise UsageError("octomap:=true needs moveit_config, a folder with sensors_3d.yaml")
     if words["moveit_config"]:
         try:
             given = words["moveit_config"]
             folder = ResourceFinder().find(given) if "://" in given else Path(given).expanduser()
-            configured = move_group_parameters(folder)
+            configured = move_group_parameters(folder, octomap=octomap)
         except (PlanningError, DescriptionError) as error:
             raise UsageError(f"moveit_config:={words['moveit_config']}: {error}") from error
     robot = {
@@ -143,6 +146,13 @@ def generate_launch_description() -> LaunchDescription:
                 choices=["true", "false"],
                 description="the simulation's things are objects of the planning scene, as they "
                 "move; for a robot whose base is fixed",
+            ),
+            DeclareLaunchArgument(
+                "octomap",
+                default_value="false",
+                choices=["true", "false"],
+                description="what the depth cameras in the configuration's sensors_3d.yaml see is "
+                "an octomap of the planning scene",
             ),
             DeclareLaunchArgument(
                 "servo",

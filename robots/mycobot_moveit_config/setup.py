@@ -5,7 +5,15 @@ from pathlib import Path
 from setuptools import setup
 
 PACKAGE = "mycobot_moveit_config"
-NEIGHBOURS = ["../../arm_control", "../../launch_py"]
+NEIGHBOURS = [
+    "../../arm_control",
+    "../../arm_description",
+    "../../arm_gazebo",
+    "../../arm_planning",
+    "../../arm_viewer",
+    "../../launch_py",
+    "../mycobot_description",
+]
 DATA_FOLDERS = ["config", "launch"]
 DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
 
@@ -23,6 +31,6 @@ setup(
         *(f"{Path(path).name} @ {Path(path).resolve().as_uri()}" for path in NEIGHBOURS),
     ],
     zip_safe=True,
-    description="The controllers of the myCobot 280, their launch file, and files for planning.",
+    description="What plans for the myCobot 280: groups, limits, controllers, and launch files.",
     license="Apache-2.0",
 )

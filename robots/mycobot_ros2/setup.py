@@ -10,6 +10,9 @@ NEIGHBOURS = [
     "../mycobot_description",
     "../mycobot_gazebo",
     "../mycobot_moveit_config",
+    "../mycobot_moveit_demos",
+    "../mycobot_mtc_demos",
+    "../mycobot_mtc_pick_place_demo",
     "../mycobot_system_tests",
 ]
 

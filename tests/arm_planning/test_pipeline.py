@@ -66,25 +66,25 @@ def beside_the_corner(trajectory: TimedTrajectory) -> float:
 
 
 def test_a_start_inside_its_limits_stays_as_it_is():
-    begin = start_state(MODEL, ARM, SCENE)
+    begin = start_state(ARM, SCENE)
     assert (begin.positions, begin.remark) == (SCENE.positions, "")
 
 
 def test_a_start_that_is_not_known_names_the_joint():
     with pytest.raises(PlanningError, match="the position of joint elbow is not known") as caught:
-        start_state(MODEL, ARM, PlanningScene({"shoulder": 0.0}))
+        start_state(ARM, PlanningScene({"shoulder": 0.0}))
     assert caught.value.code is MoveItErrorCode.START_STATE_INVALID
 
 
 def test_a_start_slightly_outside_is_moved_inside_with_a_remark():
-    begin = start_state(MODEL, ARM, at(shoulder=3.005))
+    begin = start_state(ARM, at(shoulder=3.005))
     assert begin.positions["shoulder"] == 3.0
     assert begin.remark.endswith("the plan moves joint 'shoulder' to 3.0000")
 
 
 def test_a_start_far_outside_says_by_how_much():
     with pytest.raises(PlanningError, match=r"'elbow' is at -2\.6000.* by 0\.1000") as caught:
-        start_state(MODEL, ARM, at(elbow=-2.6))
+        start_state(ARM, at(elbow=-2.6))
     assert caught.value.code is MoveItErrorCode.START_STATE_INVALID
 
 
@@ -107,6 +107,21 @@ def test_a_timed_motion_that_violates_the_constraints_is_refused():
     with pytest.raises(PlanningError, match="shoulder") as caught:
         timed_and_proved(CORNER, ARM, FakeChecker(), below("shoulder", 0.5), Timing())
     assert caught.value.code is MoveItErrorCode.INVALID_MOTION_PLAN
+
+
+def test_constraints_are_looked_at_between_the_points_too():
+    points = timed_and_proved(CORNER, ARM, None, ANYWHERE, Timing()).positions
+    widest = int(np.argmax(np.linalg.norm(np.diff(points, axis=0), axis=1)))
+    between = (points[widest] + points[widest + 1]) / 2.0
+    assert np.linalg.norm(points - between, axis=1).min() > 0.02
+
+    class Hole(ConstraintEvaluator):
+        def violation(self, q: NDArray[np.float64]) -> str:
+            return "there is a hole" if np.linalg.norm(q - between) < 0.01 else ""
+
+    hole = Hole(ANYWHERE.constraints, MODEL, ARM, SCENE.positions, lambda _q, _link: np.eye(4))
+    with pytest.raises(PlanningError, match="there is a hole"):
+        timed_and_proved(CORNER, ARM, None, hole, Timing())
 
 
 def test_timing_ends_when_nobody_wants_it_any_more():
@@ -175,7 +190,7 @@ def test_neighbours_that_touch_and_are_not_allowed_to_are_named(elbow: float, wh
     assert response.message.startswith("the start is in collision: fore with upper, ")
     assert response.message.endswith(
         f"{what}; if the two may touch, allow the pair in the SRDF (`arm planning srdf` finds such "
-        "pairs)"
+        "pairs), else jog them apart"
     )
 
 

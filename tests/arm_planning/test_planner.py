@@ -74,6 +74,13 @@ def test_a_start_slightly_outside_is_moved_inside_and_said(planner):
     assert trajectory.positions[-1, 0] == pytest.approx(1.0, abs=2e-4)
 
 
+def test_a_goal_beyond_a_limit_is_moved_to_it_and_said(planner):
+    limit = planner.model.group("arm").limits[0].upper
+    response = planner.plan(PlanRequest("arm", (joint_goal({TURN: 9.0}),)))
+    assert response.trajectory.positions[-1, 0] == pytest.approx(limit, abs=1e-6)
+    assert response.message == f"the goal of joint '{TURN}', 9, is beyond its limit; 2.88 is used"
+
+
 def test_a_thing_put_into_the_way_blocks_only_what_is_ahead(planner):
     trajectory = planner.move("arm", {TURN: 1.0})
     assert planner.blocked_ahead(trajectory, 0.0) == ""

@@ -1,6 +1,6 @@
 """Meshes as convex pieces, because MuJoCo collides convex shapes only.
 
-* A mesh file of a link: the convex hull of each of its parts.
+* A mesh file of a link: the convex hulls of its connected parts, or one hull if they are many.
 * A mesh of an object: each connected part that is closed and convex is one piece and is solid.
   Every other part is a surface: each of its triangles is a thin plate. So a concave box is not
   filled up, but what is wholly inside of a closed surface does not touch it.
@@ -8,6 +8,7 @@
 
 import hashlib
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TypeVar, cast
 
 import mujoco
@@ -39,6 +40,12 @@ FLAT = 1e-6
 SAME_PLACE = 1e-9
 """Distance below which corners are one corner, in parts of the mesh's size."""
 PRODUCTS_AT_ONCE = 4_000_000
+MAX_LINK_PIECES = 8
+"""Most pieces of a part of a link's mesh: each takes time in every check."""
+MAX_LINK_PARTS = 200
+"""Most connected parts that are looked at: each hull takes some milliseconds."""
+INSIDE_M = 1e-6
+"""How far a part may stand out of a piece that covers it, m."""
 
 
 class MeshPieces:
@@ -100,8 +107,47 @@ class MeshPieces:
             message = f"cannot use the mesh {mesh.uri}: {error}"
             raise PlanningError(MoveItErrorCode.COLLISION_CHECKING_UNAVAILABLE, message) from error
         return tuple(
-            hull(part.vertices * np.asarray(mesh.scale)) for part in parts if len(part.vertices)
+            piece
+            for part in parts
+            if len(part.vertices)
+            for piece in link_pieces(part.vertices * np.asarray(mesh.scale), part.faces)
         )
+
+
+def link_pieces(vertices: Array, triangles: NDArray[np.int32]) -> Pieces:
+    """Cover a part of a link's mesh with convex pieces.
+
+    One hull around a tube with a joint at each end fills the space beside the tube, through which
+    other links pass.
+
+    Args:
+        vertices: (n, 3), m.
+        triangles: indices of the corners of each, (m, 3).
+
+    Raises:
+        PlanningError: MuJoCo finds no hull.
+    """
+    corners, joined = vertices, triangles.astype(np.int64)
+    # Some formats give each triangle corners of its own; a closed mesh has half as many as those.
+    if len(vertices) > len(triangles):
+        corners, joined = _merged(TriangleMesh(vertices, joined))
+    parts = _parts(joined, len(corners))
+    if 1 < len(parts) <= MAX_LINK_PARTS:
+        pieces = _covering([corners[np.unique(part)] for part in parts])
+        if len(pieces) <= MAX_LINK_PIECES:
+            return tuple(piece.corners for piece in pieces)
+    return (hull(vertices),)
+
+
+def _covering(clouds: list[Array]) -> "list[Hull]":
+    """Return hulls that cover all points; it stops where they are too many."""
+    pieces: list[Hull] = []
+    for cloud in sorted(clouds, key=lambda each: -float(np.ptp(each, axis=0).max())):
+        if not any(piece.contains(cloud) for piece in pieces):
+            pieces.append(convex_hull(cloud))
+        if len(pieces) > MAX_LINK_PIECES:
+            break
+    return pieces
 
 
 def convex_pieces(mesh: TriangleMesh) -> Pieces:
@@ -129,8 +175,36 @@ def convex_pieces(mesh: TriangleMesh) -> Pieces:
     return (*pieces, *plates)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Hull:
+    """A convex body.
+
+    Attributes:
+        corners: (n, 3), m.
+        normals: of its faces, outwards, (m, 3).
+        heights: of its faces along their normals, (m,).
+    """
+
+    corners: Array
+    normals: Array
+    heights: Array
+
+    def contains(self, points: Array) -> bool:
+        """Return whether all points (n, 3) are in it."""
+        return bool((points @ self.normals.T <= self.heights + INSIDE_M).all())
+
+
 def hull(points: Array) -> Array:
-    """Return the corners of the convex hull of points, (n, 3); flat points get a thickness."""
+    """Return the corners of the convex hull of points; see `convex_hull`."""
+    return convex_hull(points).corners
+
+
+def convex_hull(points: Array) -> Hull:
+    """Return the convex hull of points, (n, 3); flat points get a thickness.
+
+    Raises:
+        PlanningError: MuJoCo finds none.
+    """
     points = thickened(points)
     spec = mujoco.MjSpec()
     spec.add_mesh(
@@ -147,11 +221,22 @@ def hull(points: Array) -> Array:
             MoveItErrorCode.INVALID_OBJECT_NAME,
             f"the mesh cannot be used: MuJoCo finds no convex hull of a part: {error}",
         ) from error
-    count = int(model.mesh_graph[0])
-    corners = model.mesh_vert[model.mesh_graph[2 + count : 2 + 2 * count]].astype(np.float64)
+    # Counts of corners and faces, two arrays of a number per corner, the edges, then the faces.
+    count, faces = (int(number) for number in model.mesh_graph[:2])
     rotation = np.zeros(9)
     mujoco.mju_quat2Mat(rotation, model.mesh_quat[0])
-    return corners @ rotation.reshape(3, 3).T + model.mesh_pos[0]
+    placed = model.mesh_vert.astype(np.float64) @ rotation.reshape(3, 3).T + model.mesh_pos[0]
+    corners = placed[model.mesh_graph[2 + count : 2 + 2 * count]]
+    a, b, c = placed[model.mesh_graph[-3 * faces :].reshape(-1, 3).T]
+    normals = np.cross(b - a, c - a)
+    lengths = np.linalg.norm(normals, axis=1)
+    solid = lengths > 0.0
+    normals = normals[solid] / lengths[solid, None]
+    heights = np.einsum("ij,ij->i", normals, a[solid])
+    inwards = normals @ corners.mean(axis=0) > heights
+    normals[inwards] *= -1.0
+    heights[inwards] *= -1.0
+    return Hull(corners, normals, heights)
 
 
 def thickened(points: Array) -> Array:

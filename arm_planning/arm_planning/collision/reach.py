@@ -1,4 +1,4 @@
-"""How far a motion of the joints can move two bodies against each other."""
+"""How far a motion of the joints can move two bodies against each other, and what none reaches."""
 
 from dataclasses import dataclass
 
@@ -7,6 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+BEYOND_M = 1e-3
+"""What is farther away than this from all places of all links is out of reach."""
+MANY = 16
+"""Of fewer fixed bodies it costs more to find those out of reach than to look at them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +43,7 @@ def reach(model: mujoco.MjModel, lower: Array, upper: Array) -> Reach:
     part = part_of_body[model.geom_bodyid]
     radius = np.zeros((len(welds), model.nq))
     moving = np.flatnonzero(part)
-    radii = _radii(model, moving, lower, upper)
+    radii, _, _ = _radii(model, moving, lower, upper)
     np.maximum.at(radius, part[moving], radii)
     carried = _carried(model, welds)
     apart = carried[:, None] ^ carried[None]
@@ -47,8 +51,43 @@ def reach(model: mujoco.MjModel, lower: Array, upper: Array) -> Reach:
     return Reach(part, part_of_body, pairs)
 
 
-def _radii(model: mujoco.MjModel, geoms: NDArray[np.intp], lower: Array, upper: Array) -> Array:
+def out_of_reach(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """Return which fixed bodies nothing that moves can touch in any state, (nbody,).
+
+    None is, if a joint slides, because it may leave its limits, or if they are few.
+    """
+    body = model.geom_bodyid
+    is_fixed = (model.body_weldid == 0) & (model.body_parentid == 0)
+    is_fixed[0] = False
+    slides = (model.jnt_type == int(mujoco.mjtJoint.mjJNT_SLIDE)).any()
+    if slides or np.count_nonzero(is_fixed) < MANY:
+        return np.zeros(model.nbody, bool)
+    moving = np.flatnonzero(model.body_weldid[body])
+    fixed = np.flatnonzero(is_fixed[body])
+    none = np.zeros(model.nq)
+    _, middle, radius = _radii(model, moving, none, none)
+    apart = np.linalg.norm(_fixed_places(model, fixed)[:, None] - middle, axis=2)
+    # A plane has no radius: it is endless.
+    own = np.where(model.geom_rbound[fixed] > 0.0, model.geom_rbound[fixed], np.inf)
+    near = fixed[(apart < radius + own[:, None] + BEYOND_M).any(axis=1)]
+    is_fixed[body[near]] = False
+    return is_fixed
+
+
+def _fixed_places(model: mujoco.MjModel, geoms: NDArray[np.intp]) -> Array:
+    """Return the middles of geoms on bodies that are fixed in the world, (geoms, 3)."""
+    body, place = model.geom_bodyid[geoms], model.geom_pos[geoms]
+    w, axis = model.body_quat[body, :1], model.body_quat[body, 1:]
+    turn = 2.0 * np.cross(axis, place)
+    return model.body_pos[body] + place + w * turn + np.cross(axis, turn)
+
+
+def _radii(
+    model: mujoco.MjModel, geoms: NDArray[np.intp], lower: Array, upper: Array
+) -> tuple[Array, Array, Array]:
     """Return the largest distance of geoms' points from the axis of each joint, (geoms, nq).
+
+    And a ball for each geom with all of its places in the world: middles, (geoms, 3), and radii.
 
     From each geom towards the root: all places of the geom in the frame of a body lie in a ball. A
     joint turns the ball's middle on a circle, which lies with it in a larger ball around the middle
@@ -59,7 +98,7 @@ def _radii(model: mujoco.MjModel, geoms: NDArray[np.intp], lower: Array, upper: 
     frame = model.geom_bodyid[geoms].copy()
     rotation = np.zeros(9)
     # A body comes after its parent.
-    for body in range(model.nbody - 1, 0, -1):
+    for body in range(int(frame.max(initial=0)), 0, -1):
         here = np.flatnonzero(frame == body)
         if not len(here):
             continue
@@ -79,7 +118,7 @@ def _radii(model: mujoco.MjModel, geoms: NDArray[np.intp], lower: Array, upper: 
         mujoco.mju_quat2Mat(rotation, model.body_quat[body])
         middle[here] = middle[here] @ rotation.reshape(3, 3).T + model.body_pos[body]
         frame[here] = model.body_parentid[body]
-    return found
+    return found, middle, radius
 
 
 def _carried(model: mujoco.MjModel, welds: NDArray[np.int32]) -> NDArray[np.bool_]:

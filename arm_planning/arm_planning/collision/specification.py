@@ -17,6 +17,7 @@ from arm_node.names import describe_known
 from arm_planning.collision.contact import BodyKind
 from arm_planning.collision.geoms import CUBE, Geom, link_geoms, object_geoms, object_placement
 from arm_planning.collision.mesh_pieces import MeshPieces
+from arm_planning.collision.reach import out_of_reach
 from arm_planning.collision.scene_difference import same_robot, same_shapes
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematic_tree import PositionMap, kinematic_tree, position_map
@@ -77,8 +78,8 @@ class CompiledScene:
         bodies: by MuJoCo's id; None for the world's own body.
         links: MuJoCo's id of the body of each link.
         coordinates: MuJoCo's coordinates as a function of the joints that vary.
-        scene: what was compiled. It may have objects that are not in the scene that was asked
-            for: in the model they touch nothing.
+        scene: what was compiled, the octomap as one of its objects. It may have objects that are
+            not in the scene that was asked for: in the model they touch nothing.
         spec: MuJoCo's specification; never changed once it is here.
         parts: what the specification was made of.
         assets: the meshes in it, by the id of their corners.
@@ -143,7 +144,7 @@ class SceneCompiler:
         self._robot = model.robot
         self._varying = varying
         self._like = like
-        self._scene = scene
+        self._scene = replace(scene, objects=scene.obstacles, octomap=None)
         self._meshes = meshes
         self._links: dict[str, _Part] = {}
         self._attached: list[_Part] = []
@@ -202,7 +203,7 @@ class SceneCompiler:
             else:
                 self._objects.append(own)
                 thing = self._scene.objects.get(part.name)
-                if thing is not None:
+                if thing is not None and thing is not like.scene.objects[part.name]:
                     own.body.pos, own.body.quat = object_placement(thing)
 
     def _begin(self) -> None:
@@ -250,7 +251,10 @@ class SceneCompiler:
         )
 
     def _set_bits(self, model: mujoco.MjModel, bodies: tuple[CollisionBody | None, ...]) -> None:
-        """Give geoms the bits that decide what they touch; objects that are gone touch nothing."""
+        """Give geoms the bits that decide what they touch; objects that are gone touch nothing.
+
+        Bodies without bits of their own are not looked at: they are gone, or out of reach.
+        """
         objects = self._scene.objects
         is_gone = np.array(
             [
@@ -264,6 +268,9 @@ class SceneCompiler:
         model.body_contype[:] = model.body_conaffinity[:] = 0
         np.bitwise_or.at(model.body_contype, model.geom_bodyid, model.geom_contype)
         np.bitwise_or.at(model.body_conaffinity, model.geom_bodyid, model.geom_conaffinity)
+        # MuJoCo sorts all other bodies in each state.
+        far = out_of_reach(model)
+        model.body_contype[far] = model.body_conaffinity[far] = 0
 
     def _set_options(self) -> None:
         option, compiler = self._spec.option, self._spec.compiler

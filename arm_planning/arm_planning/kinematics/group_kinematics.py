@@ -39,14 +39,6 @@ class GroupKinematics:
             self._by_link[link] = self._by_link[made.tip] = made
         return self._by_link[link]
 
-    def with_positions(self, positions: JointPositions) -> "GroupKinematics":
-        """Return the same for other positions; what does not depend on them is shared."""
-        other = GroupKinematics(self._model, self._group, positions)
-        other._by_link = {
-            link: made for link, made in self._by_link.items() if made.holds_for(positions)
-        }
-        return other
-
     def __call__(
         self, link: str, pose: Array, seed: Array, *, most: int, random_seed: int, any_turn: bool
     ) -> list[Array]:

@@ -1,9 +1,8 @@
 """Inverse kinematics: positions of a group's joints that bring a link to a pose.
 
 A search descends from the seed first, then from starts near the target, then from random ones (see
-`descent` and `starts`). Its length is counted in steps, not in time: the same call gives the same
-answer on a busy machine, and a timeout is turned into a number of steps. Wall time only ends a
-search that a slow `free` holds up.
+`descent` and `starts`). Its length is counted in steps, not in time, and a timeout is turned into a
+number of steps: the same call gives the same answer on a busy machine, or none when its time is up.
 """
 
 import math
@@ -44,8 +43,8 @@ STEPS_PER_S = 20_000
 """What a timeout is worth; a step takes 12 to 25 us."""
 FREE_STEPS = 5
 """What a call of `free` costs, in steps."""
-GUARD = 20.0
-"""A search ends after this many times its timeout, whatever it has found."""
+LEAST_WAIT_S = 1.0
+"""A shorter timeout does not end a search before this, so that a busy machine rarely matters."""
 HOPELESS_STEPS = 200
 """For a target farther away than the arm is long: enough to say how near it comes."""
 ROTATION_SHARE = 0.25
@@ -78,7 +77,7 @@ class InverseKinematics:
         group: name of the group; arrays have the order of its joints.
         tip: the link to place; "" for the group's own tip.
         positions: positions of joints outside of the group; 0 for those not named.
-        clock: seconds that pass, for `GUARD`.
+        clock: seconds that pass, for timeouts.
 
     Attributes:
         group: the group.
@@ -186,7 +185,7 @@ class InverseKinematics:
         target: RigidTransform | Array,
         seed: Sequence[float] | Array,
         *,
-        timeout_s: float = TIMEOUT_S,
+        timeout_s: float = 0.0,
         random_seed: int = 0,
         free: Free | None = None,
         orientation: Orientation = Orientation.EXACT,
@@ -201,6 +200,8 @@ class InverseKinematics:
             target: pose in the root link's frame; as an array a homogeneous transform, (4, 4).
             seed: where to start, (n,); moved inside the limits.
             timeout_s: length of the search, as `STEPS_PER_S` steps a second; 0 for the default.
+                With a timeout or `free`, the search also ends after so long on the clock, though
+                not before `LEAST_WAIT_S`.
             random_seed: seed of the random starts.
             free: says whether the robot is free of collisions; only such positions are returned.
             orientation: whether the orientation is to be met exactly, or as nearly as it can be
@@ -209,7 +210,7 @@ class InverseKinematics:
         Raises:
             PlanningError: NO_IK_SOLUTION: the message says how near the best one comes, and why.
                 INVALID_GOAL_CONSTRAINTS, INVALID_ROBOT_STATE: the target or the seed is not valid.
-                TIMED_OUT: `free` took too long.
+                TIMED_OUT: the time on the clock is up.
         """
         search = self._search(target, seed, timeout_s, random_seed, free, orientation)
         if orientation is Orientation.NEAREST:
@@ -237,7 +238,7 @@ class InverseKinematics:
         Raises:
             PlanningError: as in `solve`; the descent ends elsewhere.
         """
-        search = self._search(target, seed, TIMEOUT_S, 0, None, orientation)
+        search = self._search(target, seed, 0.0, 0, None, orientation)
         outcome = self._descend(search, search.seed[self._moving], PATIENT)
         if outcome.is_at(search.target, nearest=orientation is Orientation.NEAREST):
             return self._beside_seed(outcome.q, search.seed)
@@ -250,7 +251,7 @@ class InverseKinematics:
         seed: Sequence[float] | Array,
         *,
         most: int = 8,
-        timeout_s: float = TIMEOUT_S,
+        timeout_s: float = 0.0,
         random_seed: int = 0,
         free: Free | None = None,
         orientation: Orientation = Orientation.EXACT,
@@ -309,15 +310,16 @@ class InverseKinematics:
         position, quaternion = checked_pose(pose)
         length = 0.0 if orientation is Orientation.ANY else self._rotation_length
         weight = NEAREST_WEIGHT if orientation is Orientation.NEAREST else 1.0
-        timeout_s = _checked_timeout(timeout_s)
+        length_s = _checked_timeout(timeout_s)
+        is_timed = timeout_s > 0.0 or free is not None
         return Search(
             target=target_of(position, quaternion, length, weight),
             orientation=orientation,
             seed=np.minimum(np.maximum(self.checked(seed), self._lowest), self._highest),
             random_seed=random_seed,
             free=free,
-            steps=self._steps(position, timeout_s),
-            until_s=self._clock() + GUARD * timeout_s,
+            steps=self._steps(position, length_s),
+            until_s=self._clock() + max(length_s, LEAST_WAIT_S) if is_timed else math.inf,
         )
 
     def _steps(self, position: Array, timeout_s: float) -> int:
@@ -336,6 +338,8 @@ class InverseKinematics:
                     yield q, outcome
             if search.steps <= 0:
                 return
+            if self._clock() > search.until_s:
+                raise self._overdue(search)
 
     def _all_starts(self, search: Search) -> Iterator[Array]:
         yield search.seed[self._moving]
@@ -371,13 +375,15 @@ class InverseKinematics:
         is_free = search.free(q)
         if not is_free:
             search.blocked += 1
-            if self._clock() > search.until_s:
-                raise PlanningError(
-                    MoveItErrorCode.TIMED_OUT,
-                    f"no solution for link '{self.tip}' is free among the first {search.blocked}, "
-                    f"and the collision checks took {GUARD:.0f} times the timeout",
-                )
         return is_free
+
+    def _overdue(self, search: Search) -> PlanningError:
+        # What was found so far depends on how busy the machine is, so it only serves as a reason.
+        is_known = search.blocked or search.best is not None
+        why = str(self._none(search)) if is_known else f"link '{self.tip}' may have other solutions"
+        return PlanningError(
+            MoveItErrorCode.TIMED_OUT, f"{why}; the time of the search ended with that"
+        )
 
     def _none(self, search: Search) -> PlanningError:
         if search.best is not None:

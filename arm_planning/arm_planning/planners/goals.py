@@ -1,7 +1,7 @@
 """States of a group that satisfy a goal: free, within the limits, near the start first."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from arm_planning.constraints.constraints import MotionConstraints
 from arm_planning.constraints.evaluation import ConstraintEvaluator, LinkPose
-from arm_planning.constraints.joint_goals import snap_to_limits
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.goal_poses import poses_of
 from arm_planning.planners.problem import NO_DEADLINE, Deadline, StateChecker
@@ -70,7 +69,6 @@ class GoalSampler:
         start: where the path begins, (n,).
         seed: seed of the random numbers.
         deadline: when the answer is due.
-        warn: takes sentences about goals that are changed.
     """
 
     goals: tuple[MotionConstraints, ...]
@@ -84,12 +82,11 @@ class GoalSampler:
     start: Array
     seed: int = 0
     deadline: Deadline = NO_DEADLINE
-    warn: Callable[[str], None] = lambda _: None
 
     def nearest(self) -> tuple[Array, ...]:
         """Return the goal states that the middles of the goals give; there may be none."""
         found: list[Array] = []
-        for goal in self._alternatives(lambda _: None):
+        for goal in self._alternatives():
             judge = _Judge(self, goal)
             found += filter(judge.accepts, self._first_candidates(goal, judge))
         return self._sorted(found)
@@ -102,7 +99,7 @@ class GoalSampler:
         """
         found: list[Array] = []
         judges: list[_Judge] = []
-        for goal in self._alternatives(self.warn):
+        for goal in self._alternatives():
             judge = _Judge(self, goal)
             judges.append(judge)
             found += self._accepted(goal, judge)
@@ -131,8 +128,8 @@ class GoalSampler:
                 raise judge.error_at(error) from error
         return found
 
-    def _alternatives(self, warn: Callable[[str], None]) -> list[MotionConstraints]:
-        goals = [snap_to_limits(goal, self.group, warn) for goal in self.goals if goal]
+    def _alternatives(self) -> list[MotionConstraints]:
+        goals = [goal for goal in self.goals if goal]
         if not goals:
             raise PlanningError(
                 MoveItErrorCode.INVALID_GOAL_CONSTRAINTS,

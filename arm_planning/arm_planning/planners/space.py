@@ -1,6 +1,7 @@
 """The states that a path may use: free ones, and those that satisfy constraints on the way."""
 
 from functools import lru_cache
+from math import ceil
 from typing import Protocol
 
 import numpy as np
@@ -95,14 +96,14 @@ class SampledSpace:
         """Go straight until something blocks, and stop a little before it."""
         change = b - a
         count = _samples(change)
-        states = a + _one_after_the_other(count) * (change / count)
-        free = self._free_count(states)
+        step = change / count
+        # Most moves are blocked soon, so the sample without which they are too short comes first.
+        least = min(ceil(SHORTEST / max(length(step), SHORTEST / count)) + BACK_OFF, count)
+        free = self._free_count(a + _one_after_the_other(count, least) * step)
         if free == count:
             return b[None, :], True
-        kept = free - BACK_OFF
-        if kept > 0 and kept / count * length(change) >= SHORTEST:
-            return states[kept - 1 : kept], False
-        return states[:0], False
+        kept = free - BACK_OFF if free >= least else 0
+        return (a + kept * step)[None, :] if kept else np.empty((0, len(a))), False
 
     def connect(self, a: Array, b: Array) -> Array | None:
         """Go straight; samples are taken in the order in which they find obstacles soonest."""
@@ -112,10 +113,11 @@ class SampledSpace:
         return b[None, :] if self._free_count(states) == count else None
 
 
-@lru_cache(maxsize=256)
-def _one_after_the_other(count: int) -> Array:
-    """Return the numbers from 1 to a count, (count, 1)."""
-    return np.arange(1.0, count + 1.0)[:, None]
+@lru_cache(maxsize=1024)
+def _one_after_the_other(count: int, first: int) -> Array:
+    """Return the numbers from 1 to a count, (count, 1), with one of them moved to the front."""
+    numbers = [first, *range(1, first), *range(first + 1, count + 1)]
+    return np.array(numbers, np.float64)[:, None]
 
 
 @lru_cache(maxsize=256)

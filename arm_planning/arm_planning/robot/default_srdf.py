@@ -38,7 +38,7 @@ def default_srdf(robot: Robot) -> Srdf:
     grippers = list(tree.grippers())
     fingers = {joint.name for gripper in grippers for joint in gripper.joints}
     chains = tree.chains(fingers)
-    names = _chain_names(robot, chains, [gripper.palm for gripper in grippers])
+    names = _chain_names(chains)
     groups: dict[str, SrdfGroup] = {}
     states: dict[Pair, Mapping[str, tuple[float, ...]]] = {}
     for name, chain in zip(names, chains, strict=True):
@@ -188,9 +188,7 @@ def _tip(robot: Robot, body: Sequence[str], first: str, grippers: Sequence[_Grip
     return (palms or leaves[-1:] or [first])[0]
 
 
-def _chain_names(
-    robot: Robot, chains: Sequence[Sequence[Joint]], palms: Sequence[str]
-) -> list[str]:
+def _chain_names(chains: Sequence[Sequence[Joint]]) -> list[str]:
     """Name the longest chains arms, by their sides if there are several, and others by tips."""
     longest = max((len(chain) for chain in chains), default=0)
     arms = [chain for chain in chains if len(chain) == longest]

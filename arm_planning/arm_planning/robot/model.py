@@ -94,6 +94,17 @@ class PlanningModel:
             )
         return self.groups[name]
 
+    def default_group(self) -> JointGroup:
+        """Return the first group that is a chain, or the first one if there is no chain.
+
+        Raises:
+            PlanningError: INVALID_GROUP_NAME: the robot has no group.
+        """
+        if not self.groups:
+            raise PlanningError(MoveItErrorCode.INVALID_GROUP_NAME, "the robot has no group")
+        groups = self.groups.values()
+        return next((group for group in groups if group.tip), None) or next(iter(groups))
+
     def state(self, group: str, name: str) -> JointPositions:
         """Return a named state of a group.
 

@@ -12,6 +12,7 @@ from arm_node.names import listing
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import Warn, joint_positions, pose_of, transform_of
+from arm_planning.ros.convert_octomap import octomap_change_of
 from arm_planning.ros.convert_shapes import placed_shapes
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.attached_changes import AttachedChange
@@ -55,6 +56,7 @@ def scene_change_of(model: PlanningModel, message: SceneMessage, warn: Warn) -> 
             each.id: (each.color.r, each.color.g, each.color.b, each.color.a)
             for each in message.object_colors
         },
+        octomap=octomap_change_of(message.world.octomap),
     )
 
 
@@ -120,6 +122,7 @@ def frames_in(message: SceneMessage) -> Iterator[str]:
     ]
     yield from (each.header.frame_id for each in objects)
     yield from (each.header.frame_id for each in message.fixed_frame_transforms)
+    yield message.world.octomap.header.frame_id
 
 
 def _shapes(owner: str, message: ObjectMessage) -> Any:

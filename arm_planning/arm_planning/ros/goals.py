@@ -215,8 +215,6 @@ def _id(handle: ServerGoalHandle) -> bytes:
 def _finish(goal: ServedGoal, outcome: ExecutionOutcome) -> None:
     """Give a goal its status: succeeded, canceled or aborted; log the reason of a failure."""
     if outcome.code is MoveItErrorCode.SUCCESS:
-        if outcome.message:
-            LOGGER.info("%s", outcome.message)
         goal.handle.succeed()
         return
     LOGGER.error("%s: %s", outcome.code.name, outcome.message)

@@ -15,11 +15,14 @@ from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.workarounds.clocks import StampClock
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import NANOSECONDS, seconds
+from arm_planning.ros.held_time import HeldTime
 
 DEPTH = 20
 """Messages kept until they are read: several publishers may share the topic."""
 FRESH_S = 0.05
-"""A state that arrived this recently counts as the present one."""
+"""A state that arrived so recently, or is so old in simulation time, is the present one."""
+LATE_S = 0.25
+"""After so long without a state, /clock is asked for the first time."""
 POLL_S = 0.001
 
 
@@ -47,6 +50,7 @@ class JointStateMonitor:
         """On the system's clock, which is that of the middleware's time stamps."""
         self._clocks = [StampClock(each) for each in (node, *others)]
         self._polled = PolledSubscriptions(node)
+        self._time = HeldTime(node, self._polled)
         self._subscription = self._polled.subscribe(
             JointState,
             "joint_states",
@@ -80,7 +84,9 @@ class JointStateMonitor:
     def wait_for_fresh(
         self, timeout_s: float, interrupted: Callable[[], bool] = lambda: False
     ) -> str:
-        """Wait until the state is at most 50 ms old; return what is wrong after the timeout.
+        """Wait for a state from now, or 50 ms ago; return what is wrong after the timeout.
+
+        While simulation time stands still, the last state is the present one.
 
         Args:
             timeout_s: how long.
@@ -90,10 +96,12 @@ class JointStateMonitor:
             "", or a sentence: joint states have stopped, or joints are missing.
         """
         deadline_s = time.monotonic() + timeout_s
+        # A busy machine may read late what arrived in time.
+        oldest_s = time.time() - FRESH_S
         while True:
             missing = self.missing()
             age_s = time.time() - self._arrived_s
-            if age_s < FRESH_S and not missing:
+            if not missing and (self._arrived_s > oldest_s or self._is_held(age_s)):
                 return ""
             if time.monotonic() >= deadline_s or interrupted():
                 break
@@ -103,10 +111,16 @@ class JointStateMonitor:
         if missing:
             names = listing(missing)
             return f"The complete state of the robot is not yet known.  Missing {names}"
-        return (
-            f"joint_states stopped {age_s:.1f} s ago; is joint_state_broadcaster active? (A "
-            "simulation that is paused publishes none.)"
-        )
+        return f"joint_states stopped {age_s:.1f} s ago; is joint_state_broadcaster active?"
+
+    def _is_held(self, age_s: float) -> bool:
+        """Whether somebody publishes states, and simulation time has not left the last one."""
+        with self._lock:
+            if not self._time.is_heard and age_s < LATE_S:
+                return False
+            if not self._subscription.get_publisher_count():
+                return False
+            return self._time.is_at(self._stamp_s, FRESH_S, time.monotonic())
 
     def _take(self) -> None:
         for raw, arrival in self._polled.take(self._subscription, DEPTH):

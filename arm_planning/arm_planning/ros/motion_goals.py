@@ -1,7 +1,7 @@
 """The course of a goal that plans and moves: plan, execute, watch, plan again, cancel."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from arm_planning.errors import MoveItErrorCode
@@ -70,7 +70,9 @@ class MotionGoals:
             if outcome.code is MoveItErrorCode.SUCCESS and moves:
                 goal.say("MONITOR")
                 goal.has_moved = True
+                remarks = outcome.message
                 outcome = self._run(goal, trajectories, planned_in)
+                outcome = replace(outcome, message=outcome.message or remarks)
             outcome = goal.ending(outcome)
             if outcome.code not in RETRIED:
                 break

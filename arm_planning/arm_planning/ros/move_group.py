@@ -13,6 +13,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty
 
 from arm_node.executor_thread import ExecutorThread
+from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import MoveItErrorCode
 from arm_planning.execution.controllers import controllers_of_settings
 from arm_planning.execution.settings import ExecutionSettings
@@ -23,6 +24,8 @@ from arm_planning.ros.geometry_files import GeometryFiles
 from arm_planning.ros.goals import Turns
 from arm_planning.ros.motion_goals import PLANS, MotionGoals
 from arm_planning.ros.move_action import MoveActions
+from arm_planning.ros.octomap_settings import octomap_settings
+from arm_planning.ros.octomap_updater import OctomapUpdater
 from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planner_parameters import PlannerParameterServices
 from arm_planning.ros.planning_services import PlanningServices
@@ -77,14 +80,21 @@ class MoveGroup:
         self._semantic = node.create_publisher(String, "robot_description_semantic", LATCHED)
         self._semantic.publish(String(data=setup.srdf))
         self._executor = executor
-        self._moving = motions.moving
+        self._motions = motions
         scene_node.create_subscription(String, "trajectory_execution_event", self._take_event, 10)
         offer_service(node, GetGroupUrdf, "get_urdf", self._urdf)
-        offer_service(node, Empty, "clear_octomap", _clear_octomap)
+        octomap = octomap_settings(values_below(node, ""))
+        meshes = MeshPieces(setup.resources)
+        self._octomap = (
+            None
+            if octomap is None
+            else OctomapUpdater(node, self.monitor, setup.model, meshes, octomap)
+        )
+        offer_service(node, Empty, "clear_octomap", self._clear_octomap)
 
     @contextmanager
     def serving(self) -> Iterator[None]:
-        """Serve what may take long on threads of their own."""
+        """Serve what may take long on threads of their own; at the end the robot stops."""
         multi = MultiThreadedExecutor(THREADS)
         multi.add_node(self._node)
         thread = ExecutorThread("planning", multi)
@@ -92,14 +102,25 @@ class MoveGroup:
         try:
             yield
         finally:
+            for turns in (self._motions.moving, self._motions.planning):
+                turns.stop()
+            self._executor.end()
             thread.stop()
 
     def _take_event(self, event: String) -> None:
         if event.data == "stop":
-            self._moving.stop()
+            self._motions.moving.stop()
             self._executor.stop()
         else:
             LOGGER.warning("Unknown event type: '%s'; there is 'stop'", event.data)
+
+    def _clear_octomap(self, _request: Any, answer: Empty.Response) -> Empty.Response:
+        if self._octomap is not None:
+            self._octomap.clear()
+        elif self.monitor.scene.octomap is None:
+            LOGGER.warning("the scene has no octomap to clear")
+        self.monitor.set_octomap(None)
+        return answer
 
     def _urdf(self, request: Any, answer: GetGroupUrdf.Response) -> GetGroupUrdf.Response:
         if request.group_name not in self._model.groups:
@@ -112,8 +133,3 @@ class MoveGroup:
         answer.urdf_string = str(self._node.get_parameter("robot_description").value)
         answer.error_code = error_code(MoveItErrorCode.SUCCESS)
         return answer
-
-
-def _clear_octomap(_request: Any, answer: Empty.Response) -> Empty.Response:
-    LOGGER.warning("the scene has no octomap to clear")
-    return answer

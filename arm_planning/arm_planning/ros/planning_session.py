@@ -92,9 +92,12 @@ class PlanningSession:
             if not from_present:
                 scene = self.in_state(scene, request.start_state)
             with self.planner() as planner:
-                return planner.plan(self.request(request, scene), scene, interrupted)
+                response = planner.plan(self.request(request, scene), scene, interrupted)
         except PlanningError as error:
             return PlanResponse(error.code, str(error), {}, None, 0.0)
+        if response.trajectory is not None and response.message:
+            LOGGER.warning("%s", response.message)
+        return response
 
     def scene_for(
         self,

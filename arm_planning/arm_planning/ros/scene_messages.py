@@ -23,6 +23,7 @@ from shape_msgs.msg import Mesh, Plane, SolidPrimitive
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import pose_message, robot_state_message
+from arm_planning.ros.convert_octomap import octomap_message
 from arm_planning.ros.convert_shapes import solid_message
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.object_changes import explicit_pose
@@ -55,6 +56,8 @@ def scene_message(model: PlanningModel, scene: PlanningScene, parts: int = 0) ->
         message.world.collision_objects = objects
     elif wanted & Parts.WORLD_OBJECT_NAMES:
         message.world.collision_objects = [ObjectMessage(id=name) for name in scene.objects]
+    if wanted & Parts.OCTOMAP and scene.octomap is not None:
+        message.world.octomap = octomap_message(scene.octomap, model.frame)
     if wanted & Parts.TRANSFORMS:
         message.fixed_frame_transforms = [
             _transform_message(model.frame, name, pose) for name, pose in scene.transforms.items()

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from geometry_msgs.msg import TransformStamped
 from moveit_msgs.msg import (
     AttachedCollisionObject,
     CollisionObject,
@@ -14,14 +13,11 @@ from moveit_msgs.msg import (
 )
 from moveit_msgs.msg import PlanningScene as SceneMessage
 from moveit_msgs.srv import ApplyPlanningScene, GetPlanningScene
+from octomap_msgs.msg import OctomapWithPose
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
-from rclpy.serialization import deserialize_message
-from tf2_msgs.msg import TFMessage
 
-from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import PlanningError
 from arm_planning.robot.model import PlanningModel
@@ -30,9 +26,11 @@ from arm_planning.ros.convert import robot_state_message
 from arm_planning.ros.convert_scene import frames_in, scene_change_of
 from arm_planning.ros.joint_state_monitor import JointStateMonitor
 from arm_planning.ros.scene_messages import scene_message
+from arm_planning.ros.transform_reader import TransformReader
 from arm_planning.ros.usable_meshes import without_unusable
 from arm_planning.ros.world_objects import WorldObjects
 from arm_planning.scene.frames import LinkPoses, frame_names
+from arm_planning.scene.occupancy_map import OccupancyMap
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import SceneOutcome, change_scene
 
@@ -41,7 +39,6 @@ MONITORED_DEPTH = 100
 PUBLISH_HZ = 4.0
 MOVED = 1e-6
 """Change of a joint from which the state is published again, rad or m."""
-TRANSFORMS_TAKEN = 200
 LOGGER = logging.getLogger("move_group")
 
 
@@ -67,7 +64,7 @@ class SceneMonitor:
         self._scene = scene
         self._lock = threading.Lock()
         self.states = JointStateMonitor(node, model, *others)
-        self._frames = _TransformReader(node)
+        self._frames = TransformReader(node)
         self._world: WorldObjects | None = None
         self._things: frozenset[str] = frozenset()
         self._publisher = node.create_publisher(
@@ -176,20 +173,30 @@ class SceneMonitor:
                 raise unusable[0]
             self._scene = scene
 
+    def set_octomap(self, octomap: OccupancyMap | None) -> None:
+        """Replace the octomap; None removes it. Any thread."""
+        with self._lock:
+            self._scene = replace(self._scene, octomap=octomap)
+
     def _hear_scene(self, message: SceneMessage) -> None:
         self.change(message)
 
     def _hear_world(self, message: PlanningSceneWorld) -> None:
         removes_all = CollisionObject(operation=CollisionObject.REMOVE)
-        self._change_objects([removes_all, *message.collision_objects])
+        self._change_objects([removes_all, *message.collision_objects], message.octomap)
 
     def _hear_object(self, message: CollisionObject) -> None:
         self._change_objects([message])
 
-    def _change_objects(self, objects: Sequence[CollisionObject]) -> None:
+    def _change_objects(
+        self, objects: Sequence[CollisionObject], octomap: OctomapWithPose | None = None
+    ) -> None:
         scene = SceneMessage(is_diff=True)
         scene.robot_state.is_diff = True
         scene.world.collision_objects = objects
+        if octomap is not None:
+            scene.world.octomap = octomap
+            scene.world.octomap.octomap.id = octomap.octomap.id or "cleared"
         self.change(scene)
 
     def _hear_attached(self, message: AttachedCollisionObject) -> None:
@@ -219,50 +226,6 @@ class SceneMonitor:
         else:
             return
         self._published = scene
-
-
-class _TransformReader:
-    """Reads /tf and /tf_static, only when somebody asks for a frame."""
-
-    def __init__(self, node: Node) -> None:
-        self._polled = PolledSubscriptions(node)
-        latched = QoSProfile(depth=TRANSFORMS_TAKEN, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self._subscriptions = (
-            self._polled.subscribe(TFMessage, "/tf_static", latched),
-            self._polled.subscribe(TFMessage, "/tf", QoSProfile(depth=TRANSFORMS_TAKEN)),
-        )
-        self._latest: dict[str, TransformStamped] = {}
-        self._lock = threading.Lock()
-
-    def pose(self, name: str, planning_frame: str) -> RigidTransform | None:
-        """Return a frame's pose in the planning frame; None if no transforms connect them."""
-        with self._lock:
-            for subscription in self._subscriptions:
-                for raw, _ in self._polled.take(subscription, TRANSFORMS_TAKEN):
-                    message: TFMessage = deserialize_message(raw, TFMessage)
-                    for transform in message.transforms:
-                        self._latest[transform.child_frame_id.lstrip("/")] = transform
-            ours = self._in_root(planning_frame.lstrip("/"))
-            theirs = self._in_root(name.lstrip("/"))
-        if ours[0] != theirs[0]:
-            return None
-        return ours[1].inverse().then(theirs[1])
-
-    def _in_root(self, name: str) -> tuple[str, RigidTransform]:
-        """Return the root above a frame, and the frame's pose in it."""
-        pose, passed = RigidTransform(), {name}
-        while name in self._latest:
-            stamped = self._latest[name]
-            translation, rotation = stamped.transform.translation, stamped.transform.rotation
-            step = RigidTransform(
-                (translation.x, translation.y, translation.z),
-                (rotation.x, rotation.y, rotation.z, rotation.w),
-            )
-            pose, name = step.then(pose), stamped.header.frame_id.lstrip("/")
-            if name in passed:
-                break
-            passed.add(name)
-        return name, pose
 
 
 def _has_moved(before: PlanningScene, after: PlanningScene) -> bool:

@@ -113,7 +113,7 @@ class SequenceSession:
         groups = self.session.model.groups
         for name in dict.fromkeys(item.req.group_name for item in items):
             if name in groups:
-                begin = start_state(self.session.model, groups[name], scene)
+                begin = start_state(groups[name], scene)
                 scene = replace(scene, positions=begin.positions)
                 if begin.remark:
                     LOGGER.warning("%s", begin.remark)

@@ -44,6 +44,7 @@ class ServoScene:
                 PlanningSceneComponents.SCENE_SETTINGS,
                 PlanningSceneComponents.ROBOT_STATE_ATTACHED_OBJECTS,
                 PlanningSceneComponents.WORLD_OBJECT_GEOMETRY,
+                PlanningSceneComponents.OCTOMAP,
                 PlanningSceneComponents.TRANSFORMS,
                 PlanningSceneComponents.ALLOWED_COLLISION_MATRIX,
                 PlanningSceneComponents.LINK_PADDING_AND_SCALING,
@@ -70,6 +71,7 @@ def _give(take: Any, future: Any) -> None:
 def _changes_more_than_the_state(message: SceneMessage) -> bool:
     return bool(
         message.world.collision_objects
+        or message.world.octomap.octomap.id
         or message.robot_state.attached_collision_objects
         or message.allowed_collision_matrix.entry_names
         or message.fixed_frame_transforms

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from action_msgs.msg import GoalStatus
 from control_msgs.action import FollowJointTrajectory, GripperCommand, ParallelGripperCommand
-from rclpy.action.client import ActionClient
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
@@ -24,6 +23,7 @@ from arm_planning.execution.controllers import (
 from arm_planning.execution.settings import ExecutionSettings
 from arm_planning.ros.convert import trajectory_message
 from arm_planning.ros.joint_state_monitor import JointStateMonitor
+from arm_planning.ros.noted_action_client import NotedActionClient
 from arm_planning.trajectory import TimedTrajectory
 
 ACTIONS: dict[ControllerKind, type[Any]] = {
@@ -35,6 +35,7 @@ POLL_S = 0.005
 SERVER_TIMEOUT_S = 2.0
 STATE_TIMEOUT_S = 1.0
 STOP_TIMEOUT_S = 2.0
+END_TIMEOUT_S = 3.0
 CANCEL_AGAIN_S = 0.25
 REST_TIMEOUT_S = 1.0
 RESTS = 1e-3
@@ -78,13 +79,21 @@ class ExecutionManager:
         self.controllers = controllers
         self._settings = settings
         self._group = ReentrantCallbackGroup()
-        self._clients: dict[tuple[str, ControllerKind], ActionClient] = {}
+        self._clients: dict[tuple[str, ControllerKind], NotedActionClient] = {}
         self._busy = threading.Lock()
         self._stop = threading.Event()
+        self._is_over = False
 
     def stop(self) -> None:
         """Stop the robot; `execute` returns PREEMPTED. Any thread."""
         self._stop.set()
+
+    def end(self) -> None:
+        """Stop the robot for good, while the node is still spun, and wait until it is done."""
+        self._is_over = True
+        self._stop.set()
+        if self._busy.acquire(timeout=END_TIMEOUT_S):
+            self._busy.release()
 
     def execute(
         self,
@@ -110,10 +119,12 @@ class ExecutionManager:
             return ExecutionOutcome(MoveItErrorCode.CONTROL_FAILED, busy)
         try:
             self._stop.clear()
+            if self._is_over:
+                return STOPPED
             if not len(trajectory.times_s):
                 return ExecutionOutcome(MoveItErrorCode.SUCCESS)
             chosen = choose_controllers(list(self.controllers()), trajectory.joints, names)
-            self._check_start(trajectory, interrupted)
+            self._check_start(trajectory, chosen, interrupted)
             run = _Run([self._goal(trajectory, each) for each in chosen])
             if interrupted():
                 return STOPPED
@@ -123,16 +134,27 @@ class ExecutionManager:
         finally:
             self._busy.release()
 
-    def _check_start(self, trajectory: TimedTrajectory, interrupted: Callable[[], bool]) -> None:
+    def _check_start(
+        self,
+        trajectory: TimedTrajectory,
+        chosen: Sequence[TrajectoryController],
+        interrupted: Callable[[], bool],
+    ) -> None:
+        """Refuse a trajectory that begins where the robot is not.
+
+        A gripper's command has a goal alone, so it may begin anywhere: it may hold an object.
+        """
         tolerance = self._settings.start_tolerance
         if tolerance <= 0.0:
             return
         if problem := self._states.wait_for_fresh(STATE_TIMEOUT_S, interrupted):
             raise _failure(f"Failed to validate trajectory: {problem}")
         present = self._states.positions()
+        follow = ControllerKind.FOLLOW_JOINT_TRAJECTORY
+        checked = {joint for each in chosen if each.kind is follow for joint in each.joints}
         for joint, wanted in zip(trajectory.joints, trajectory.positions[0].tolist(), strict=True):
             distance = abs(wanted - present.get(joint, wanted))
-            if distance > tolerance:
+            if joint in checked and distance > tolerance:
                 raise _failure(
                     "Invalid Trajectory: start point deviates from current robot state more than "
                     f"{tolerance:g} at joint '{joint}': it is at {present[joint]:.4f}, the "
@@ -142,7 +164,7 @@ class ExecutionManager:
     def _goal(self, trajectory: TimedTrajectory, controller: TrajectoryController) -> "_Goal":
         key = (controller.action_name, controller.kind)
         if key not in self._clients:
-            self._clients[key] = ActionClient(
+            self._clients[key] = NotedActionClient(
                 self._node,
                 ACTIONS[controller.kind],
                 controller.action_name,
@@ -162,11 +184,15 @@ class ExecutionManager:
         self, run: "_Run", watch: Watch | None, interrupted: Callable[[], bool]
     ) -> ExecutionOutcome:
         start_s = self._states.stamp_s
+        accepted_by_s = time.monotonic() + SERVER_TIMEOUT_S
         run.send()
         try:
             while not (outcome := run.outcome() or self._interruption(run, start_s, watch)):
                 if interrupted():
                     self.stop()
+                if not run.is_accepted and time.monotonic() < accepted_by_s:
+                    # It does not move yet; on a busy machine the answers take a while.
+                    start_s = self._states.stamp_s
         finally:
             # Whatever ended it, an error of the watch included: what still runs is stopped.
             running = run.cancel()
@@ -218,6 +244,11 @@ class _Run:
         for goal in self._goals:
             goal.send()
 
+    @property
+    def is_accepted(self) -> bool:
+        """Whether all controllers have taken their goals."""
+        return all(goal.is_accepted for goal in self._goals)
+
     def outcome(self) -> ExecutionOutcome | None:
         """Return how it ended: the first failure, or success once all have ended."""
         outcomes = [goal.outcome() for goal in self._goals]
@@ -252,7 +283,11 @@ class _Goal:
     """One controller's goal; its futures complete on the threads that spin the node."""
 
     def __init__(
-        self, controller: TrajectoryController, client: ActionClient, message: Any, longest_s: float
+        self,
+        controller: TrajectoryController,
+        client: NotedActionClient,
+        message: Any,
+        longest_s: float,
     ) -> None:
         self.longest_s = longest_s
         self.controller = controller
@@ -270,6 +305,10 @@ class _Goal:
     @property
     def runs(self) -> bool:
         return self._result is None and not self._refused and self._client.server_is_ready()
+
+    @property
+    def is_accepted(self) -> bool:
+        return self._handle is not None
 
     def cancel(self) -> None:
         self._wants_cancel = True

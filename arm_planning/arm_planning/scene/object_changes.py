@@ -11,10 +11,9 @@ from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.frames import LinkPoses, frame_pose
 from arm_planning.scene.object_checks import check_pose, check_shapes, refusal
 from arm_planning.scene.objects import CollisionObject, PlacedShape
+from arm_planning.scene.occupancy_map import OCTOMAP
 from arm_planning.scene.scene import PlanningScene
 
-OCTOMAP = "<octomap>"
-"""The object that sensors make; others cannot have its name."""
 NO_POSE = RigidTransform()
 
 

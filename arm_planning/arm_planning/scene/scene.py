@@ -7,6 +7,7 @@ from arm_node.rigid_transform import RigidTransform
 from arm_planning.robot.model import JointPositions
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.objects import AttachedBody, CollisionObject
+from arm_planning.scene.occupancy_map import OCTOMAP, OccupancyMap
 
 Rgba = tuple[float, float, float, float]
 
@@ -25,6 +26,7 @@ class PlanningScene:
         transforms: fixed frames in the planning frame, by name.
         colors: colours of objects, by id.
         name: its name.
+        octomap: occupied space; None if there is none.
     """
 
     positions: JointPositions
@@ -36,3 +38,11 @@ class PlanningScene:
     transforms: Mapping[str, RigidTransform] = field(default_factory=dict)
     colors: Mapping[str, Rgba] = field(default_factory=dict)
     name: str = "(noname)"
+    octomap: OccupancyMap | None = None
+
+    @property
+    def obstacles(self) -> Mapping[str, CollisionObject]:
+        """What the robot must not touch: the objects, and the octomap as one more."""
+        if self.octomap is None:
+            return self.objects
+        return {**self.objects, OCTOMAP: self.octomap.obstacle}

@@ -13,7 +13,9 @@ from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.attached_changes import AttachedChange, change_attached
 from arm_planning.scene.frames import LinkPoses, frame_pose
 from arm_planning.scene.object_changes import ObjectChange, Operation, change_object
-from arm_planning.scene.object_checks import check_pose
+from arm_planning.scene.object_checks import LARGEST_M, check_pose
+from arm_planning.scene.occupancy_map import OccupancyMap
+from arm_planning.scene.octree import Cubes
 from arm_planning.scene.scene import PlanningScene, Rgba
 
 _logger = logging.getLogger(__name__)
@@ -28,6 +30,23 @@ class FixedTransform:
 
     frame: str
     pose: RigidTransform
+
+
+@dataclass(frozen=True, slots=True)
+class OctomapChange:
+    """A new octomap.
+
+    Attributes:
+        frame: where its pose is given; "" is the planning frame.
+        pose: of its origin.
+        resolution_m: edge of its smallest cube.
+        cubes: occupied space; None to remove the octomap.
+    """
+
+    frame: str
+    pose: RigidTransform
+    resolution_m: float
+    cubes: Cubes | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +68,7 @@ class SceneChange:
         padding: how much links are grown, in m.
         scale: factors of links' sizes.
         colors: colours of objects, by id.
+        octomap: what replaces the octomap; None to leave it, or in a full scene for none.
     """
 
     is_diff: bool = True
@@ -63,6 +83,7 @@ class SceneChange:
     padding: Mapping[str, float] = field(default_factory=dict)
     scale: Mapping[str, float] = field(default_factory=dict)
     colors: Mapping[str, Rgba] = field(default_factory=dict)
+    octomap: OctomapChange | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +124,9 @@ def change_scene(
     parts.take_transforms(change)
     for each in change.objects:
         parts.attempt(lambda scene, links, each=each: change_object(scene, links, each))
+    octomap = change.octomap
+    if octomap is not None:
+        parts.attempt(lambda scene, links: _with_octomap(scene, links, octomap))
     parts.take_links("padding", change.padding, least=0.0)
     parts.take_links("scale", change.scale, least=math.ulp(0.0))
     parts.scene = replace(parts.scene, colors={**parts.scene.colors, **change.colors})
@@ -173,9 +197,10 @@ class _Parts:
                 self._refuse(
                     MoveItErrorCode.INVALID_LINK_NAME, f"{what} of no link '{link}'; {known}"
                 )
-            elif not least <= value < math.inf:
+            elif not least <= value <= LARGEST_M:
                 bound = "not negative" if least == 0.0 else "above 0"
-                sentence = f"the {what} of link '{link}' is {value}; it is finite and {bound}"
+                bound += f" and at most {LARGEST_M:g}"
+                sentence = f"the {what} of link '{link}' is {value}; it is {bound}"
                 self._refuse(MoveItErrorCode.INVALID_LINK_NAME, sentence)
             else:
                 before = self.scene.padding if what == "padding" else self.scene.scale
@@ -210,6 +235,14 @@ def _with_transform(
     check_pose(fixed.pose, f"frame '{name}'")
     pose = frame_pose(scene, links, fixed.frame).then(fixed.pose)
     return replace(scene, transforms={**scene.transforms, name: pose})
+
+
+def _with_octomap(scene: PlanningScene, links: LinkPoses, change: OctomapChange) -> PlanningScene:
+    if change.cubes is None:
+        return replace(scene, octomap=None)
+    check_pose(change.pose, "the octomap")
+    pose = frame_pose(scene, links, change.frame).then(change.pose)
+    return replace(scene, octomap=OccupancyMap(change.resolution_m, change.cubes, pose))
 
 
 def _warn_of_touching(change: SceneChange, parts: _Parts, warn: Warn) -> None:

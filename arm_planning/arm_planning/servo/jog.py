@@ -12,7 +12,7 @@ from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.proximity import Proximity
 from arm_planning.kinematics.chain import Chain
-from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
+from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.scene.frames import LinkPoses, frame_pose
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.servo.collision_slowdown import CollisionSlowdown
@@ -67,7 +67,7 @@ class Jog:
     def __init__(
         self, model: PlanningModel, settings: ServoSettings, meshes: MeshPieces | None = None
     ) -> None:
-        self.group = _group(model, settings.group)
+        self.group = model.group(settings.group) if settings.group else model.default_group()
         self._model, self._settings = model, settings
         self._meshes = meshes or MeshPieces()
         factor = settings.override_velocity_scaling_factor or 1.0
@@ -223,15 +223,6 @@ class Jog:
                 Proximity(model), self._bounds, reach_m, self._settings
             )
         self._scene, self._others = scene, others
-
-
-def _group(model: PlanningModel, name: str) -> JointGroup:
-    if name:
-        return model.group(name)
-    chains = [group for group in model.groups.values() if group.tip]
-    if not chains:
-        raise refused("the robot has no group that is a chain: give move_group_name")
-    return chains[0]
 
 
 def _moved(before: JointPositions, after: JointPositions) -> bool:

@@ -92,6 +92,10 @@ class DrivenSpline:
             rows.append(np.einsum("ik,ikn->kn", weights, values))
         return rows[0], rows[1], rows[2]
 
+    def positions_in(self, segment: int, fractions: Array) -> Array:
+        """Return positions at fractions of the time of one segment, (k, n)."""
+        return bernstein(_DEGREE, fractions).T @ self.values[:, segment]
+
     def largest(self, order: int) -> Array:
         """Return a tight bound of a derivative's size in each segment, (m - 1, n)."""
         return np.abs(halved(self.derivative(order))).max(axis=0)

@@ -1,11 +1,13 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from planning_models import model_of
 from robots import joint, link, robot
 
 from arm_description.urdf.robot import Mesh
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.collision.mesh_pieces import MeshPieces, convex_pieces, hull
+from arm_planning.collision.mesh_pieces import MeshPieces, convex_pieces, hull, link_pieces
 from arm_planning.collision.model import CollisionModel
 from arm_planning.errors import PlanningError
 from arm_planning.scene.objects import CollisionObject, PlacedShape
@@ -137,6 +139,53 @@ def test_a_surface_of_too_many_triangles_is_refused():
 def test_pieces_are_made_once():
     meshes = MeshPieces()
     assert meshes.of_object(cube()) is meshes.of_object(cube())
+
+
+def side_by_side(count: int, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the corners and triangles of cubes in a row."""
+    moved = [CORNERS + np.array([step * index, 0.0, 0.0]) for index in range(count)]
+    return np.concatenate(moved), np.concatenate([FACES + 8 * index for index in range(count)])
+
+
+def test_the_space_between_the_parts_of_a_links_mesh_is_free():
+    first, second = link_pieces(*side_by_side(2, 3.0))
+    assert (np.ptp(first, axis=0), np.ptp(second, axis=0)) == (
+        pytest.approx((1.0, 1.0, 1.0)),
+        pytest.approx((1.0, 1.0, 1.0)),
+    )
+
+
+def test_parts_of_a_links_mesh_are_found_if_each_triangle_has_its_own_corners():
+    corners, triangles = side_by_side(2, 3.0)
+    soup = np.arange(3 * len(triangles)).reshape(-1, 3)
+    assert len(link_pieces(corners[triangles].reshape(-1, 3), soup)) == 2
+
+
+def test_a_part_of_a_links_mesh_inside_of_another_is_no_piece():
+    corners, triangles = side_by_side(2, 0.0)
+    corners[8:] = 0.25 + corners[8:] / 2.0
+    (piece,) = link_pieces(corners, triangles)
+    assert np.ptp(piece, axis=0) == pytest.approx((1.0, 1.0, 1.0))
+
+
+def test_many_parts_of_a_links_mesh_get_one_hull():
+    (piece,) = link_pieces(*side_by_side(9, 3.0))
+    assert np.ptp(piece, axis=0) == pytest.approx((25.0, 1.0, 1.0))
+
+
+@given(st.lists(st.tuples(*[st.floats(-2.0, 2.0)] * 3), min_size=1, max_size=10))
+def test_the_pieces_of_a_links_mesh_cover_it(places):
+    corners = np.concatenate([CORNERS / 2.0 + np.array(place) for place in places])
+    triangles = np.concatenate([FACES + 8 * index for index in range(len(places))])
+    pieces = link_pieces(corners, triangles)
+    low = np.concatenate(pieces).min(axis=0)
+    assert low == pytest.approx(corners.min(axis=0), abs=2e-6)
+    for corner in corners:
+        # A corner of the mesh is in some piece: no direction separates it from all of that.
+        assert any(np.linalg.norm(piece - corner, axis=1).min() < 2e-6 for piece in pieces) or any(
+            ((piece.min(axis=0) <= corner + 2e-6) & (corner <= piece.max(axis=0) + 2e-6)).all()
+            for piece in pieces
+        )
 
 
 def test_a_links_mesh_is_read_and_scaled(tmp_path):

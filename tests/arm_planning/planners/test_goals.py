@@ -139,14 +139,6 @@ def test_the_same_seed_gives_the_same_goal_states():
     assert np.array_equal(first, again)
 
 
-def test_a_goal_beyond_a_limit_is_moved_and_said_once():
-    said = []
-    goals = sampler(joints(3.2, 0.0, 0.0), warn=said.append)
-    goals.nearest()
-    assert goals.all()[0][0] == 3.0
-    assert said == ["the goal of joint 'j0', 3.2, is beyond its limit; 3 is used"]
-
-
 @pytest.mark.parametrize("goal", [joints(1.57, 0.0, 0.0), pose_goal([1.57, 0.0, 0.0])])
 def test_a_goal_in_collision_names_what_touches(goal):
     code, sentence = code_of(sampler(goal, arm=PlanarArm(((0.0, 1.0, 0.2),))))

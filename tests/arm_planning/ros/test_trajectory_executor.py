@@ -1,5 +1,6 @@
 """Runs trajectories on controllers: whatever ends it, the robot is stopped."""
 
+import threading
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -52,6 +53,7 @@ class Controller:
         self.cancels = 0
         self.lost_cancels = 0
         self.accepted = True
+        self.answer = Answer(self)
         self._end = Answer(is_done=False)
 
     def wait_for_server(self, _timeout_s: float) -> bool:
@@ -61,7 +63,7 @@ class Controller:
         return True
 
     def send_goal_async(self, _goal: Any) -> Answer:
-        return Answer(self)
+        return self.answer
 
     def get_result_async(self) -> Answer:
         return self._end
@@ -93,13 +95,18 @@ class States:
 @pytest.fixture
 def controller(monkeypatch: pytest.MonkeyPatch) -> Controller:
     made = Controller()
-    monkeypatch.setattr(trajectory_executor, "ActionClient", lambda *_, **__: made)
+    monkeypatch.setattr(trajectory_executor, "NotedActionClient", lambda *_, **__: made)
     return made
 
 
 @pytest.fixture
-def manager() -> ExecutionManager:
-    return ExecutionManager(None, States(), lambda: [ARM], ExecutionSettings())
+def states() -> States:
+    return States()
+
+
+@pytest.fixture
+def manager(states: States) -> ExecutionManager:
+    return ExecutionManager(None, states, lambda: [ARM], ExecutionSettings())
 
 
 def test_an_error_of_the_watch_stops_the_robot(manager: ExecutionManager, controller: Controller):
@@ -159,6 +166,44 @@ def test_what_is_interrupted_before_it_begins_does_not_move(
     outcome = manager.execute(MOTION, (), None, lambda: True)
     assert outcome.code is MoveItErrorCode.PREEMPTED
     assert controller.cancels == 0
+
+
+def test_at_the_end_the_robot_stops_and_no_other_motion_begins(
+    manager: ExecutionManager, controller: Controller
+):
+    ending = threading.Thread(target=manager.end)
+
+    def watch(_elapsed_s: float) -> str:
+        if ending.ident is None:
+            ending.start()
+        return ""
+
+    outcome = manager.execute(MOTION, (), watch)
+    ending.join()
+    assert outcome.code is MoveItErrorCode.PREEMPTED
+    assert controller.cancels == 1
+    assert manager.execute(MOTION).code is MoveItErrorCode.PREEMPTED
+
+
+def test_the_time_of_a_motion_counts_from_when_its_controller_takes_it(
+    manager: ExecutionManager, controller: Controller, states: States
+):
+    controller.answer = Answer(is_done=False)
+    elapsed: list[float] = []
+
+    def watch(elapsed_s: float) -> str:
+        elapsed.append(elapsed_s)
+        if len(elapsed) == 1:
+            states.stamp_s = 10.0
+        elif len(elapsed) == 2:
+            controller.answer.complete(controller)
+            states.stamp_s = 11.0
+        else:
+            controller.end(GoalStatus.STATUS_SUCCEEDED)
+        return ""
+
+    assert manager.execute(MOTION, (), watch).code is MoveItErrorCode.SUCCESS
+    assert elapsed == [0.0, 0.0, 1.0]
 
 
 def test_a_refused_motion_names_the_controller(manager: ExecutionManager, controller: Controller):

@@ -142,12 +142,17 @@ def test_a_part_that_fails_leaves_the_others_in_force():
         (
             SceneChange(padding={"arm": -0.1}),
             MoveItErrorCode.INVALID_LINK_NAME,
-            "the padding of link 'arm' is -0.1; it is finite and not negative",
+            "the padding of link 'arm' is -0.1; it is not negative and at most 1e+06",
         ),
         (
             SceneChange(scale={"arm": 0.0}),
             MoveItErrorCode.INVALID_LINK_NAME,
-            "the scale of link 'arm' is 0.0; it is finite and above 0",
+            "the scale of link 'arm' is 0.0; it is above 0 and at most 1e+06",
+        ),
+        (
+            SceneChange(padding={"arm": 1e308}),
+            MoveItErrorCode.INVALID_LINK_NAME,
+            "the padding of link 'arm' is 1e+308; it is not negative and at most 1e+06",
         ),
         (
             SceneChange(

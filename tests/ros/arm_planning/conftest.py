@@ -1,5 +1,6 @@
 """The simulated myCobot with move_group, and a client beside it that speaks MoveIt's messages."""
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -45,6 +46,7 @@ class Planning:
         self.client = client
         self._action_type = ActionClient
         self._actions: dict[str, Any] = {}
+        self._said: dict[bytes, Any] = defaultdict(client.collector)
         self._services: dict[str, Any] = {}
         self._publishers: dict[str, Any] = {}
         self.joint_states = client.subscribe(JointState, "/joint_states")
@@ -76,14 +78,25 @@ class Planning:
         """Send a goal to an action; it must be accepted."""
         if name not in self._actions:
             self._actions[name] = self._action_type(self.client.node, kind, name)
+            self._hear_feedback(kind, name)
         action = self._actions[name]
         self.client.wait_until(action.server_is_ready, f"the action {name}")
-        said = self.client.collector()
-        handle = self.run_in_executor(
-            lambda: action.send_goal_async(goal, lambda message: said(message.feedback.state))
-        )()
+        handle = self.run_in_executor(lambda: action.send_goal_async(goal))()
         assert handle.accepted
-        return Goal(self, handle, said)
+        return Goal(self, handle, self._said[bytes(handle.goal_id.uuid)])
+
+    def _hear_feedback(self, kind: Any, name: str) -> None:
+        """Collect the states of an action's goals.
+
+        rclpy drops feedback that it reads after the result, although it was sent before.
+        """
+
+        def take(message: Any) -> None:
+            self._said[bytes(message.goal_id.uuid)](message.feedback.state)
+
+        node = self.client.node
+        node.create_subscription(kind.Impl.FeedbackMessage, f"{name}/_action/feedback", take, 10)
+        self.client.be_known_to_server(f"{name}/_action/send_goal")
 
     def publish(self, topic: str, message: Any) -> None:
         """Publish to a topic that move_group is known to read."""

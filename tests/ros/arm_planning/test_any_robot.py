@@ -4,7 +4,6 @@ import sys
 from contextlib import closing
 from pathlib import Path
 
-import numpy as np
 import pytest
 from programs import Program
 from robots import box, joint, link, robot
@@ -35,7 +34,10 @@ def test_arm_move_plans_and_moves_it(launch, client, urdf):
     words = [sys.executable, "-m", "arm_cli", "move", "--joints", "j1=0.4", "j2=-0.3"]
     with closing(Program(words)) as program:
         assert "moved group 'arm'" in program.succeed()
-    states.clear()
-    state = states.wait_for(1)[-1]
-    positions = dict(zip(state.name, state.position, strict=True))
-    assert np.allclose([positions[j] for j in ("j1", "j2", "j3")], [0.4, -0.3, 0.0], atol=0.01)
+    wanted = {"j1": 0.4, "j2": -0.3, "j3": 0.0}
+
+    def are_there(messages: list[JointState]) -> bool:
+        last = messages[-1] if messages else JointState()
+        return dict(zip(last.name, last.position, strict=True)) == pytest.approx(wanted, abs=0.01)
+
+    states.wait_until(are_there, f"the joints at {wanted}")

@@ -503,6 +503,7 @@ def test_a_goal_beyond_a_limit_is_moved_to_the_limit(planning, request_of, joint
     response = planning.plan(request_of(joint_goal({"link1_to_link2": 9.0}), start=joints()))
     assert response.error_code.val == SUCCESS, response.error_code.message
     assert points(response)[-1].positions[0] == pytest.approx(2.879793, abs=1e-5)
+    assert "'link1_to_link2', 9, is beyond its limit" in response.error_code.message
 
 
 def test_a_goal_in_collision_names_what_touches(planning, request_of, joint_goal, joints, box):

@@ -1,5 +1,7 @@
 """servo_node beside move_group, jogged as moveit_servo's clients do it."""
 
+import os
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -197,3 +199,63 @@ def test_a_paused_jog_drops_commands_until_it_goes_on(jog: JogClient):
         assert jog.position(BASE) == pytest.approx(before[BASE], abs=1e-3)
         jog.client.call(SetBool, "/servo_node/pause_servo", SetBool.Request(data=False))
         jog.planning.joint_moves(BASE, 0.05)
+
+
+@contextmanager
+def teleop() -> Iterator[tuple[Program, Callable[[str], None]]]:
+    """Yield `arm teleop` on a terminal, and a function that types."""
+    keyboard, terminal = os.openpty()
+    program = Program([sys.executable, "-m", "arm_cli", "teleop"], stdin=terminal)
+    try:
+        program.wait_for_line("speed 50%")
+        yield program, lambda keys: os.write(keyboard, keys.encode()) and None
+    finally:
+        program.close()
+        os.close(keyboard)
+        os.close(terminal)
+
+
+def test_keys_jog_a_joint_and_space_stops_the_robot(jog: JogClient):
+    from std_srvs.srv import SetBool
+
+    before = jog.planning.stands_still()[BASE]
+    with teleop() as (program, press):
+
+        def is_turned() -> bool:
+            press("1")
+            jog.planning.joint_states.clear()
+            jog.planning.joint_states.wait_for(1)
+            return jog.position(BASE) > before + 0.1
+
+        jog.client.wait_until(is_turned, "the joint that the key 1 turns")
+        jog.planning.stands_still()
+        press(" ")
+        program.wait_for_line("/emergency_stop: stopped")
+        press("q")
+        program.succeed()
+    request = SetBool.Request(data=False)
+    assert jog.client.call(SetBool, "/emergency_stop", request).success
+
+
+def test_a_gamepad_moves_the_tip_while_its_button_is_held(
+    jog: JogClient, planning: Any, joint_goal: Any, request_of: Any, joints: Any
+):
+    from sensor_msgs.msg import Joy
+
+    bent = joint_goal(joints(0.0, -0.5, 1.57, 0.6, 0.3))
+    assert planning.move(request_of(bent)).result.error_code.val == 1
+    before = jog.tip()
+    with teleop() as (program, press):
+        pads = jog.client.node.create_publisher(Joy, "/joy", 10)
+
+        def is_lowered() -> bool:
+            pads.publish(Joy(axes=[0.0] * 4 + [-1.0] + [0.0] * 3, buttons=[0, 0, 0, 0, 1]))
+            jog.planning.joint_states.clear()
+            jog.planning.joint_states.wait_for(1)
+            return jog.tip().z < before.z - 0.01
+
+        jog.client.wait_until(is_lowered, "the tip that the right stick lowers")
+        pads.publish(Joy(axes=[0.0], buttons=[]))
+        program.wait_for_line("the gamepad has 1 axes and 0 buttons")
+        press("q")
+        program.succeed()

@@ -13,6 +13,13 @@ from arm_description.resources import find_package
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 
+def lives(process: psutil.Process) -> bool:
+    try:
+        return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:  # It has ended between the two.
+        return False
+
+
 def test_the_script_ends_all_that_it_has_started(tmp_path):
     script = find_package("mycobot_bringup") / "scripts" / "mycobot_280_gazebo.sh"
     path = os.pathsep.join([os.path.dirname(sys.executable), os.environ["PATH"]])
@@ -39,7 +46,7 @@ def test_the_script_ends_all_that_it_has_started(tmp_path):
         rest, _ = running.communicate(timeout=60.0)
         assert running.returncode == 0
         assert "Cleaning up..." in rest
-        assert [p for p in started if p.is_running() and p.status() != psutil.STATUS_ZOMBIE] == []
+        assert [process for process in started if lives(process)] == []
     finally:
         if running.poll() is None:
             running.send_signal(signal.SIGTERM)

@@ -1,7 +1,6 @@
 """The myCobot in the simulation, as a stranger's program uses it: topics, actions, launch files."""
 
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -18,40 +17,18 @@ FOLLOWERS = {
     "gripper_base_to_gripper_right2": -1.0,
     "gripper_right3_to_gripper_right1": 1.0,
 }
-TIMEOUT_S = 60.0
-
-
-def waited(future: Any) -> Any:
-    """Return a future's result; the client's executor runs in a thread of its own."""
-    done = threading.Event()
-    future.add_done_callback(lambda _: done.set())
-    assert done.wait(TIMEOUT_S), "no answer"
-    return future.result()
 
 
 @pytest.fixture
-def result_of(client: Any) -> Iterator[Callable[..., Any]]:
+def result_of(client: Any) -> Callable[..., Any]:
     """Send a goal to an action; return the result's envelope, with `status` and `result`."""
-    from rclpy.action import ActionClient
-
-    actions: list[ActionClient] = []
 
     def carry_out(action_type: Any, name: str, goal: Any) -> Any:
-        action = ActionClient(client.node, action_type, name)
-        actions.append(action)
-        client.wait_until(action.server_is_ready, f"the action {name}")
+        ended = client.send_goal(client.action(action_type, name), goal)
+        assert ended is not None, f"{name} rejects the goal"
+        return client.result_of(ended, name)
 
-        async def send() -> Any:
-            handle = await action.send_goal_async(goal)
-            assert handle.accepted
-            return await handle.get_result_async()
-
-        # In the executor's thread: an answer must not come before its request is noted.
-        return waited(client.executor.create_task(send))
-
-    yield carry_out
-    for action in actions:
-        waited(client.executor.create_task(action.destroy))
+    return carry_out
 
 
 def prefixed(joint: str, prefix: str) -> str:
@@ -148,6 +125,7 @@ def test_a_copy_has_actions_and_controllers_of_its_own(launch, client, result_of
         listed = client.call(ListControllers, service, ListControllers.Request()).controller
         assert [controller.state for controller in listed] == ["active"] * count
     assert launched.stop() == 0
+    assert "Traceback" not in launched.output
 
 
 def test_the_description_alone_shows_the_robot_without_gripper(launch, client):

@@ -1,0 +1,110 @@
+"""Which points are on or in bodies: a robot's links, and what is attached to it or in the scene."""
+
+from collections.abc import Iterable
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.collision.geoms import Geom, link_geoms, object_geoms
+from arm_planning.collision.mesh_pieces import Hull, MeshPieces, convex_hull
+from arm_planning.robot.model import PlanningModel
+from arm_planning.scene.frames import LinkPoses
+from arm_planning.scene.scene import PlanningScene
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+MOST_HULLS = 500
+
+
+class BodyFilter:
+    """Tells which points belong to what the scene knows; not thread-safe.
+
+    Args:
+        model: the robot.
+        meshes: cuts meshes.
+        scale: factor of each shape about its middle.
+        padding_m: by which each shape is grown then.
+    """
+
+    def __init__(
+        self, model: PlanningModel, meshes: MeshPieces, scale: float, padding_m: float
+    ) -> None:
+        self._model, self._meshes = model, meshes
+        self._scale, self._padding_m = scale, padding_m
+        self._hulls: dict[int, tuple[Array, Hull]] = {}
+
+    def inside(self, points: Array, scene: PlanningScene) -> Mask:
+        """Return which points (n, 3) in the planning frame are in a link or an object, (n,).
+
+        Raises:
+            PlanningError: a shape cannot be used.
+        """
+        found = np.zeros(len(points), bool)
+        for pose, geoms in self._bodies(scene):
+            for geom in geoms:
+                position, (w, x, y, z) = geom.placement
+                placed = pose.then(RigidTransform(position, (x, y, z, w)))
+                matrix = np.array(placed.matrix())
+                rest = np.flatnonzero(~found)
+                local = (points[rest] - matrix[:3, 3]) @ matrix[:3, :3]
+                near = np.flatnonzero(self._near(geom, local))
+                found[rest[near]] = self._in_shape(geom, local[near])
+        return found
+
+    def _bodies(self, scene: PlanningScene) -> Iterable[tuple[RigidTransform, tuple[Geom, ...]]]:
+        links = LinkPoses(self._model, scene.positions)
+        for link in self._model.robot.links:
+            if link.collisions:
+                yield links[link.name], link_geoms(link, self._meshes)
+        for body in scene.attached.values():
+            pose = links[body.link].then(body.object.pose)
+            yield pose, object_geoms(body.object, self._meshes)
+        for thing in scene.objects.values():
+            yield thing.pose, object_geoms(thing, self._meshes)
+
+    def _near(self, geom: Geom, local: Array) -> Mask:
+        """Return which points are in a ball about a shape."""
+        if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
+            return np.ones(len(local), bool)
+        if geom.corners is None:
+            middle, radius = np.zeros(3), float(np.linalg.norm(geom.size))
+            if geom.type == mujoco.mjtGeom.mjGEOM_CAPSULE:
+                radius = geom.size[0] + geom.size[1]
+        else:
+            middle = geom.corners.mean(axis=0)
+            radius = float(np.linalg.norm(geom.corners - middle, axis=1).max())
+        reach = self._scale * radius + 2 * self._padding_m
+        return ((local - middle) ** 2).sum(axis=1) <= reach**2
+
+    def _in_shape(self, geom: Geom, local: Array) -> Mask:
+        x, y, z = self._scale * np.array(geom.size) + self._padding_m
+        match geom.type:
+            case mujoco.mjtGeom.mjGEOM_BOX:
+                return np.asarray((np.abs(local) <= (x, y, z)).all(axis=1))
+            case mujoco.mjtGeom.mjGEOM_SPHERE:
+                return (local**2).sum(axis=1) <= x**2
+            case mujoco.mjtGeom.mjGEOM_CYLINDER:
+                return (np.hypot(*local[:, :2].T) <= x) & (np.abs(local[:, 2]) <= y)
+            case mujoco.mjtGeom.mjGEOM_CAPSULE:
+                half = self._scale * geom.size[1]
+                beyond = np.maximum(np.abs(local[:, 2]) - half, 0.0)
+                return (local[:, :2] ** 2).sum(axis=1) + beyond**2 <= x**2
+            case mujoco.mjtGeom.mjGEOM_PLANE:
+                return local[:, 2] <= self._padding_m
+            case _:
+                hull = self._hull(geom)
+                middle = hull.normals @ hull.corners.mean(axis=0)
+                heights = middle + self._scale * (hull.heights - middle) + self._padding_m
+                return np.asarray((local @ hull.normals.T <= heights).all(axis=1))
+
+    def _hull(self, geom: Geom) -> Hull:
+        corners = geom.corners
+        assert corners is not None
+        if id(corners) not in self._hulls:
+            if len(self._hulls) >= MOST_HULLS:
+                self._hulls.pop(next(iter(self._hulls)))
+            # The corners are kept, so that no other array gets their id.
+            self._hulls[id(corners)] = (corners, convex_hull(corners))
+        return self._hulls[id(corners)][1]

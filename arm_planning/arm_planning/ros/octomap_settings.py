@@ -1,0 +1,107 @@
+"""The parameters of the octomap, by MoveIt's names, as a node's parameters have them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+from arm_node.names import describe_known
+from arm_planning.errors import MoveItErrorCode, PlanningError
+
+PLUGIN = "occupancy_map_monitor/PointCloudOctomapUpdater"
+RESOLUTION_M = 0.1
+"""As upstream, where nothing is given."""
+
+
+@dataclass(frozen=True, slots=True)
+class OctomapSensor:
+    """A depth camera whose points make the octomap.
+
+    Attributes:
+        name: its name in the parameters.
+        topic: of its point clouds, whose rows and columns are those of a picture.
+        max_range_m: points farther away are left out.
+        subsample: every how many rows and columns are used.
+        padding_m: by which the robot and the objects are grown before they are cut out.
+        scale: factor of their size before that.
+        rate_hz: how often it is read.
+    """
+
+    name: str
+    topic: str
+    max_range_m: float
+    subsample: int
+    padding_m: float
+    scale: float
+    rate_hz: float
+
+
+@dataclass(frozen=True, slots=True)
+class OctomapSettings:
+    """What makes the octomap.
+
+    Attributes:
+        frame: of the map; "" for the planning frame.
+        resolution_m: edge of a cube.
+        sensors: at least one.
+    """
+
+    frame: str
+    resolution_m: float
+    sensors: tuple[OctomapSensor, ...]
+
+
+def octomap_settings(given: Mapping[str, Any]) -> OctomapSettings | None:
+    """Return the settings; None if there are no sensors.
+
+    Args:
+        given: the node's parameters by their names.
+
+    Raises:
+        PlanningError: a value cannot be used.
+    """
+    names = given.get("sensors") or ()
+    if isinstance(names, str) or not all(isinstance(name, str) for name in names):
+        raise _refusal(f"sensors is {names!r}; it is a list of names")
+    sensors = tuple(_sensor(given, name) for name in names if name)
+    if not sensors:
+        return None
+    resolution_m = _number(given, "octomap_resolution", RESOLUTION_M, above=0.0)
+    return OctomapSettings(str(given.get("octomap_frame", "")), resolution_m, sensors)
+
+
+def _sensor(given: Mapping[str, Any], name: str) -> OctomapSensor:
+    plugin = given.get(f"{name}.sensor_plugin", "")
+    if plugin != PLUGIN:
+        known = describe_known(str(plugin), [PLUGIN], "there is")
+        raise _refusal(f"{name}.sensor_plugin is '{plugin}'; {known}")
+    topic = given.get(f"{name}.point_cloud_topic", "")
+    if not topic or not isinstance(topic, str):
+        raise _refusal(f"{name}.point_cloud_topic is {topic!r}; it is a topic's name")
+    subsample = given.get(f"{name}.point_subsample", 1)
+    if not isinstance(subsample, int) or subsample < 1:
+        raise _refusal(f"{name}.point_subsample is {subsample}; it is a whole number from 1")
+    padding_m = _number(given, f"{name}.padding_offset", 0.0, above=-1e-9)
+    return OctomapSensor(
+        name,
+        topic,
+        _number(given, f"{name}.max_range", 5.0, above=0.0),
+        subsample,
+        padding_m,
+        _number(given, f"{name}.padding_scale", 1.0, above=0.0),
+        _number(given, f"{name}.max_update_rate", 1.0, above=0.0),
+    )
+
+
+def _number(given: Mapping[str, Any], name: str, default: float, above: float) -> float:
+    value = given.get(name, default)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise _refusal(f"{name} is {value!r}; it is a number")
+    if not (isfinite(value) and value > above):
+        bound = "above 0" if above == 0.0 else "not negative"
+        raise _refusal(f"{name} is {value}; it is finite and {bound}")
+    return float(value)
+
+
+def _refusal(sentence: str) -> PlanningError:
+    return PlanningError(MoveItErrorCode.FAILURE, sentence)
