@@ -8,6 +8,7 @@ PACKAGE = "arm_viewer"
 NEIGHBOURS = ["../arm_description", "../arm_node", "../arm_planning"]
 REQUIREMENTS = [
     "PyYAML>=6.0",
+    "mcap>=1.6,<2",
     "networkx>=3",
     "numpy>=2",
     "opencv-python-headless>=4.9",
@@ -15,9 +16,11 @@ REQUIREMENTS = [
     "rich>=13",
     "ros-jazzy-common-interfaces==5.3.6",
     "ros-jazzy-rclpy[fastrtps]==7.1.6",
+    "segno>=1.6,<2",
     "trimesh>=4.4",
     "viser>=1.1,<2",
     "websockets>=14",
+    "zstandard>=0.22",
 ]
 FRONT = ["*.js", "*.css", "*.html", "*.svg"]
 DATA_FOLDERS = ["launch"]

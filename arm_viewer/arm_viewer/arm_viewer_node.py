@@ -1,14 +1,21 @@
 """The executable arm_viewer_node: serves the browser page."""
 
+import os
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from arm_description.errors import DescriptionError
+from arm_node.notify import notify
 from arm_node.printable import printable
 from arm_node.process import NodeProcess, run_process
 from arm_node.workarounds.discovery import first_node
 from arm_viewer.errors import ConfigError, ViewerError
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 
 @contextmanager
@@ -17,8 +24,13 @@ def application(process: NodeProcess) -> Iterator[None]:
     # Where SciPy is installed, trimesh would import it: 45 MB for what the page never uses.
     sys.modules.setdefault("scipy", None)  # pyright: ignore[reportArgumentType]
     # Imported only after the environment is prepared, because it locates the message packages.
+    from arm_viewer.access import TOKEN_VARIABLE, Access
+    from arm_viewer.invitation import invitation
     from arm_viewer.page import page_running
     from arm_viewer.page_server import page_server
+    from arm_viewer.recordings.player import Player
+    from arm_viewer.recordings.recorder import Recorder
+    from arm_viewer.ros.recorded_state import RecordedState
     from arm_viewer.ros.viewer import Viewer
     from arm_viewer.rviz_config import read_config_file
 
@@ -30,10 +42,42 @@ def application(process: NodeProcess) -> Iterator[None]:
         except ConfigError as error:
             # As in RViz: the page shows the robot all the same.
             node.get_logger().error(printable(str(error)))
-    with page_server(node.port) as server, page_running(server, node.latest, node.send, config):
-        node.get_logger().info(f"the page is at http://127.0.0.1:{server.get_port()}")
+    token = os.environ.get(TOKEN_VARIABLE, "")
+    access = Access.on(node.host, node.is_read_only, token)
+    player = Player(node.latest, node.send, RecordedState)
+    folder, first = _recordings(node)
+    recorder = Recorder(folder)
+    if first is not None:
+        player.open(first)
+    with (
+        closing(player),
+        closing(recorder),
+        page_server(node.port, access=access) as server,
+        page_running(server, player.latest, player.send, config, (player, recorder)),
+    ):
+        if access.needs_token:
+            # Not by the node's log, which everybody on the graph can read.
+            sys.stdout.write(invitation(server, sys.stdout))
+            sys.stdout.flush()
+        else:
+            node.get_logger().info(f"the page is at {server.url}")
+        if not node.port:
+            where = "the address with the token" if access.needs_token else server.url
+            notify(f"X_REMARK=the page: {where}")
         process.executor.add_node(node)
         yield
+
+
+def _recordings(node: "Node") -> tuple[Path, Path | None]:
+    """Declare the parameters about recordings; return the folder and what is shown first."""
+    from arm_node.parameter_values import read_text
+    from arm_node.parameters import declare
+
+    folder = declare(
+        node, "recordings", ".", read_text, "folder of the recordings that the page lists"
+    )
+    first = declare(node, "recording", "", read_text, "recording that the page shows first")
+    return Path(folder), Path(first) if first else None
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -4,6 +4,7 @@ A text frame is a JSON object whose `kind` names its handler. A binary frame sta
 that does the same. The channel shares origin, port and request gate with the page.
 """
 
+import base64
 import json
 import logging
 import math
@@ -20,10 +21,13 @@ MAX_LENGTH = 65536
 """Longest frame that a browser may send, in characters or bytes."""
 MAX_TEXT_LENGTH = 200
 """Longest text in a field of a message."""
+MAX_TEXTS = 200
+"""Longest list of texts in a field of a message."""
 MAX_UNSENT_BYTES = 262144
 """A browser that is this far behind misses binary frames until it has caught up."""
 REFUSED = "refused"
 """The kind of the answer to a message that cannot be served."""
+READ_ONLY = "this page is read-only: nothing was sent"
 
 logger = logging.getLogger(__name__)
 
@@ -52,6 +56,19 @@ class Message:
             )
         return value
 
+    def texts(self, name: str) -> tuple[str, ...]:
+        """Return a list of texts.
+
+        Raises:
+            BrowserMessageError: the field is not a list of at most MAX_TEXTS texts.
+        """
+        values = self._fields.get(name)
+        if not isinstance(values, list) or len(values) > MAX_TEXTS:
+            raise BrowserMessageError(
+                f"'{name}' of '{self.kind}' is not a list of at most {MAX_TEXTS} texts"
+            )
+        return tuple(Message(self.kind, {name: value}).text(name) for value in values)
+
     def number(self, name: str) -> float:
         """Return a finite number.
 
@@ -78,6 +95,29 @@ class Message:
             raise BrowserMessageError(f"'{name}' of '{self.kind}' is neither true nor false")
         return value
 
+    def data(self, name: str) -> bytes:
+        """Return bytes that were sent in base 64; only the frame's length limits them.
+
+        Raises:
+            BrowserMessageError: the field is missing, or has something else.
+        """
+        value = self._fields.get(name)
+        try:
+            return base64.b64decode(value if isinstance(value, str) else "?", validate=True)
+        except ValueError:
+            raise BrowserMessageError(f"'{name}' of '{self.kind}' is not base 64") from None
+
+    def named_texts(self, name: str) -> dict[str, str]:
+        """Return texts by name; only the frame's length limits them.
+
+        Raises:
+            BrowserMessageError: the field is missing, or has something else.
+        """
+        value = self._fields.get(name)
+        if not isinstance(value, dict) or not all(isinstance(v, str) for v in value.values()):
+            raise BrowserMessageError(f"'{name}' of '{self.kind}' does not have texts by name")
+        return {str(key): text for key, text in value.items()}
+
 
 class Browser:
     """The page in one browser, as long as it is connected."""
@@ -94,6 +134,13 @@ class Browser:
         """Send a message to this browser; nothing happens if it has left."""
         broadcast((self._connection,), _encoded(kind, fields))
 
+    def send_bytes(self, kind: int, payload: bytes) -> bool:
+        """Send a binary frame to this browser; return False if it has not nearly caught up."""
+        if _unsent_bytes(self._connection) >= MAX_UNSENT_BYTES:
+            return False
+        broadcast((self._connection,), bytes((kind,)) + payload)
+        return True
+
 
 Handler = Callable[[Message, Browser], None]
 """Serves a message in viser's event loop; a BrowserMessageError's sentence goes to the browser."""
@@ -104,12 +151,21 @@ class Channel:
 
     def __init__(self) -> None:
         self._handlers: dict[str, Handler] = {}
+        self._harmless: set[str] = set()
         self._connections: set[ServerConnection] = set()
         self._kept: dict[str, str] = {}
 
-    def on(self, kind: str, handler: Handler) -> None:
-        """Let a handler serve the messages of a kind; it replaces an earlier one."""
+    def on(self, kind: str, handler: Handler, *, changes: bool = True) -> None:
+        """Let a handler serve the messages of a kind; it replaces an earlier one.
+
+        Args:
+            kind: what the messages are about.
+            handler: serves them.
+            changes: whether they change more than what their own browser shows. A browser that
+                may only look is refused these.
+        """
         self._handlers[kind] = handler
+        (self._harmless.discard if changes else self._harmless.add)(kind)
 
     def send(self, kind: str, fields: Mapping[str, object], *, keep: bool = False) -> None:
         """Send a message to every browser.
@@ -141,8 +197,13 @@ class Channel:
         """Whether a browser is connected."""
         return bool(self._connections)
 
-    async def serve(self, connection: ServerConnection) -> None:
-        """Serve a browser until it disconnects."""
+    async def serve(self, connection: ServerConnection, *, may_change: bool = True) -> None:
+        """Serve a browser until it disconnects.
+
+        Args:
+            connection: to the browser.
+            may_change: whether it may do more than look.
+        """
         browser = Browser(connection)
         # Without waiting in between, so that no message comes before what it replaces.
         for text in self._kept.values():
@@ -150,11 +211,11 @@ class Channel:
         self._connections.add(connection)
         try:
             async for frame in connection:
-                self._take(frame, browser)
+                self._take(frame, browser, may_change)
         finally:
             self._connections.discard(connection)
 
-    def _take(self, frame: str | bytes, browser: Browser) -> None:
+    def _take(self, frame: str | bytes, browser: Browser, may_change: bool) -> None:
         """Serve one frame; whatever is wrong with it is answered and not raised."""
         fields: dict[str, Any] = {}
         try:
@@ -163,6 +224,8 @@ class Channel:
             handler = self._handlers.get(kind)
             if handler is None:
                 raise BrowserMessageError(f"the page does not serve '{kind[:MAX_TEXT_LENGTH]}'")
+            if not may_change and kind not in self._harmless:
+                raise BrowserMessageError(READ_ONLY)
             handler(Message(kind, fields), browser)
         except BrowserMessageError as error:
             _refuse(browser, fields, str(error))

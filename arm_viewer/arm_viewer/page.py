@@ -14,17 +14,25 @@ from viser import GuiApi, GuiTabHandle
 
 from arm_viewer.page_look import LEFT_PANEL_WIDTH_PX, apply_look
 from arm_viewer.page_server import PageServer
+from arm_viewer.panels.calls import Calls
 from arm_viewer.panels.camera_panel import CameraPanel
 from arm_viewer.panels.config_panel import ConfigPanel
 from arm_viewer.panels.controller_panel import ControllerPanel
-from arm_viewer.panels.graph_panel import GraphPanel, TopicPanel
+from arm_viewer.panels.graph_panel import GraphPanel
 from arm_viewer.panels.joint_panel import JointPanel
+from arm_viewer.panels.observations import Observations
+from arm_viewer.panels.overlay_panel import OverlayPanel
 from arm_viewer.panels.panel import Panel
+from arm_viewer.panels.picture_panel import PicturePanel
 from arm_viewer.panels.planning_panel import PlanningPanel
-from arm_viewer.panels.plot_panel import PlotPanel
+from arm_viewer.panels.plots import PlotFeed
 from arm_viewer.panels.robot_panel import RobotPanel
 from arm_viewer.panels.status_panel import StatusPanel
 from arm_viewer.panels.time_bar import TimeBar
+from arm_viewer.panels.timeline import TimelinePanel
+from arm_viewer.panels.world_panel import WorldPanel
+from arm_viewer.recordings.player import Player
+from arm_viewer.recordings.recorder import Recorder
 from arm_viewer.requests import Send, Watch
 from arm_viewer.rviz_config import PageConfig
 from arm_viewer.scene.first_view import FirstView
@@ -48,6 +56,7 @@ def page_running(
     latest: Callable[[], Snapshot],
     send: Send,
     config: PageConfig | None = None,
+    recordings: tuple[Player, Recorder] | None = None,
 ) -> Iterator[None]:
     """Build the page, and keep it up to date while the context lasts.
 
@@ -56,9 +65,12 @@ def page_running(
         latest: returns the newest snapshot.
         send: takes the user's requests.
         config: what the page shows first.
+        recordings: what plays recordings and what makes them; None for a page without a timeline.
     """
     loop = server.get_event_loop()
-    panels = asyncio.run_coroutine_threadsafe(_build(server, send, config), loop).result()
+    panels = asyncio.run_coroutine_threadsafe(
+        _build(server, send, config, recordings), loop
+    ).result()
     ended = threading.Event()
     updates = asyncio.run_coroutine_threadsafe(_update(server, panels, latest, send, ended), loop)
     try:
@@ -68,7 +80,12 @@ def page_running(
         updates.result()
 
 
-async def _build(server: PageServer, send: Send, config: PageConfig | None) -> tuple[Panel, ...]:
+async def _build(
+    server: PageServer,
+    send: Send,
+    config: PageConfig | None,
+    recordings: tuple[Player, Recorder] | None,
+) -> tuple[Panel, ...]:
     apply_look(server)
     gui = server.gui
     poses = Poses(server.channel, lambda: len(server.get_clients()))
@@ -77,34 +94,50 @@ async def _build(server: PageServer, send: Send, config: PageConfig | None) -> t
     status.build(gui)
     bar = TimeBar(server.channel, send)
     bar.build(gui)
+    timeline = () if recordings is None else (TimelinePanel(server.channel, *recordings),)
+    for panel in timeline:
+        panel.build(gui)
     joints = JointPanel(send)
     server.channel.on(TYPED_NUMBER, typed_number_handler(joints.take_typed))
     view = FirstView(server)
-    robots = RobotPanel(server.scene, frames, poses, view)
+    world = WorldPanel(server.scene, server.channel, send)
+    robots = RobotPanel(server.scene, frames, poses, view, world.choose)
+    overlays = OverlayPanel(server.scene, frames)
     main = {
-        "Robot": (joints, robots, ConfigPanel(server, robots, view, config)),
+        "Robot": (joints, robots, overlays, ConfigPanel(server, robots, view, config)),
+        "World": (world,),
         "Control": (ControllerPanel(send),),
-        "System": (GraphPanel(), TopicPanel(send)),
+        "System": (GraphPanel(),),
     }
 
     def is_watched() -> bool:
         return bool(server.get_clients())
 
-    above, below = gui.add_panel(visible=False), gui.add_panel()
-    below.dock_left()
-    above.dock_above(below)
-    below.set_width(LEFT_PANEL_WIDTH_PX)
-    cameras = {"Cameras": (CameraPanel(send, is_watched, above),)}
-    plots = {"Plots": (PlotPanel(is_watched),)}
+    left = gui.add_panel(visible=False)
+    left.dock_left()
+    left.set_width(LEFT_PANEL_WIDTH_PX)
+    pictures = PicturePanel(server.channel)
+    pictures.build(gui)
+    cameras = {"Cameras": (CameraPanel(send, is_watched, left, pictures.wanted),)}
+    plots = PlotFeed(server.channel, send)
+    plots.build(gui)
+    observations = Observations(server.channel, send)
+    observations.build(gui)
+    calls = Calls(server.channel, send)
+    calls.build(gui)
     tabs = gui.add_tab_group()
     planning = PlanningPanel(server.scene, frames, send, tabs.add_tab)
     planning.build(gui)
     return (
         status,
         bar,
+        *timeline,
         *_build_tabs(main, gui, tabs.add_tab),
-        *_build_tabs(cameras, gui, above.add_tab),
-        *_build_tabs(plots, gui, below.add_tab),
+        pictures,
+        *_build_tabs(cameras, gui, left.add_tab),
+        plots,
+        observations,
+        calls,
         planning,
     )
 

@@ -60,6 +60,21 @@ class Activity(Enum):
 
 
 @dataclass(frozen=True, slots=True)
+class JogView:
+    """A servo_node, which lets a robot follow its tip.
+
+    Attributes:
+        group: the group that it jogs.
+        said: what slows it down or stops it; empty if nothing does.
+        is_stopped: whether `said` is why the robot does not move.
+    """
+
+    group: str
+    said: str = ""
+    is_stopped: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class PlanningView:
     """One move_group.
 
@@ -73,6 +88,7 @@ class PlanningView:
         failed: whether `said` is about a failure.
         scene: the planning scene; None until it is known.
         scene_problem: why the last change of the scene by this page was not possible.
+        jog: the servo_node of its robot; None if none runs.
     """
 
     namespace: str
@@ -84,6 +100,7 @@ class PlanningView:
     failed: bool = False
     scene: PlanningScene | None = None
     scene_problem: str = ""
+    jog: JogView | None = None
 
 
 def default_group(model: PlanningModel) -> str:

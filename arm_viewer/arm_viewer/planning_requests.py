@@ -34,11 +34,29 @@ class DragTip:
         namespace: namespace of the move_group.
         group: name of the group.
         pose: pose of the group's tip in the frame of the robot's root link.
+        avoids: whether the robot may take any posture that touches nothing. While one drags, the
+            nearest one is wanted, and what it touches is shown.
     """
 
     namespace: str
     group: str
     pose: RigidTransform
+    avoids: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class JogTip:
+    """Let the robot follow with its tip, as long as this is repeated.
+
+    Attributes:
+        namespace: namespace of the move_group.
+        pose: pose of the jogged group's tip in the frame of the robot's root link.
+        drag: number of the user's drag; a new one chooses the type of commands again.
+    """
+
+    namespace: str
+    pose: RigidTransform
+    drag: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,5 +112,5 @@ class RemoveObject:
 
 
 PlanningRequest = (
-    SetGoal | DragTip | PlanMotion | ExecutePlan | StopMotion | AddObject | RemoveObject
+    SetGoal | DragTip | JogTip | PlanMotion | ExecutePlan | StopMotion | AddObject | RemoveObject
 )

@@ -4,7 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 
+from arm_viewer.calls.call import CallRequest
 from arm_viewer.planning_requests import PlanningRequest
+from arm_viewer.world_requests import WorldRequest
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +55,18 @@ class MeasureRates:
     """Start or stop measuring the rates of all topics."""
 
     wanted: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PlotCurves:
+    """Collect the samples of exactly these curves, named as in `plots.field_paths`."""
+
+    names: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class ListNumbers:
+    """Find out which numbers the messages of each topic have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +142,9 @@ RunRequest = SetPlaying | StepRun | SetSpeed | ResetRun | UseSnapshot
 Request = (
     Watch
     | ShowPictures
+    | PlotCurves
+    | ListNumbers
+    | CallRequest
     | MoveJoints
     | SwitchControllers
     | Configure
@@ -135,6 +152,7 @@ Request = (
     | PlanningRequest
     | RunRequest
     | SetEmergencyStop
+    | WorldRequest
 )
 Send = Callable[[Request], None]
 """Passes a request to the ROS thread without blocking; any thread may call it."""

@@ -4,6 +4,7 @@ The ROS thread creates a new snapshot in every tick. Any thread may keep one.
 SI units: m, rad, s. `received_s` is a time of `time.monotonic`.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
@@ -16,6 +17,9 @@ from numpy.typing import NDArray
 from arm_description.urdf.robot import Robot
 from arm_node.drawing import NodeTopics
 from arm_node.rigid_transform import RigidTransform
+from arm_viewer.calls.call import Callee, CallState
+from arm_viewer.plots.history import Curves
+from arm_viewer.world.world_view import WorldView
 
 if TYPE_CHECKING:
     # Imported at run time only where a move_group runs.
@@ -182,6 +186,10 @@ class SimulationTime:
     measured_s: float
     received_s: float
 
+    def at(self, now_s: float) -> float:
+        """Return simulation time at a time of `time.monotonic`, if it has gone on as before."""
+        return self.time_s + self.factor * (now_s - self.received_s)
+
 
 @dataclass(frozen=True, slots=True)
 class NamedSnapshot:
@@ -237,6 +245,8 @@ class Topic:
         publishers: number of publishers.
         subscriptions: number of subscriptions except the page's own.
         rate_hz: messages per second; NaN if not measured.
+        bytes_per_s: bandwidth; NaN if not measured.
+        delay_s: mean time from the stamps to the arrival; NaN if not measured, or without stamps.
     """
 
     name: str
@@ -244,6 +254,48 @@ class Topic:
     publishers: int
     subscriptions: int
     rate_hz: float
+    bytes_per_s: float = math.nan
+    delay_s: float = math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class LogEntry:
+    """A message of a node's logger.
+
+    Attributes:
+        number: counts the entries of this page.
+        time_s: its stamp, in simulation time if the node uses that.
+        level: 10, 20, 30, 40 or 50, as in rcl_interfaces/msg/Log.
+        node: name of the logger.
+        text: the message.
+        place: function, file and line.
+    """
+
+    number: int
+    time_s: float
+    level: int
+    node: str
+    text: str
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentStatus:
+    """The last status of a component, as in diagnostic_msgs/msg/DiagnosticStatus.
+
+    Attributes:
+        level: 0 is OK, 1 a warning, 2 an error, 3 stale.
+        text: what the component says.
+        hardware: identity of the hardware.
+        values: keys and values.
+        received_s: when it arrived.
+    """
+
+    level: int
+    text: str
+    hardware: str
+    values: tuple[tuple[str, str], ...]
+    received_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,6 +303,9 @@ class Snapshot:
     """The whole state. Mappings are keyed by topic, except `transforms`, by child frame."""
 
     made_s: float = 0.0
+    replay: str = ""
+    """The name of the recording that this is a moment of; empty if it is live. Its `made_s` and
+    `received_s` then count the seconds that are shown, and stand while the recording does."""
     descriptions: Mapping[str, Description] = field(default_factory=lambda: MappingProxyType({}))
     transforms: Mapping[str, Transform] = field(default_factory=lambda: MappingProxyType({}))
     joint_states: Mapping[str, JointStates] = field(default_factory=lambda: MappingProxyType({}))
@@ -280,10 +335,26 @@ class Snapshot:
     """None if /clock has no publisher."""
     run: RunStatus | None = None
     """None if no simulation answers."""
+    world: WorldView | None = None
+    """None if no simulation serves its world."""
     stops: Mapping[str, bool] = field(default_factory=lambda: MappingProxyType({}))
     """Whether the emergency stop is engaged, by the namespace that offers one."""
     control_answer: ControlAnswer = ControlAnswer(0, "", True)
     topics: tuple[Topic, ...] = ()
+    log: tuple[LogEntry, ...] = ()
+    """The newest messages of /rosout, oldest first."""
+    diagnoses: Mapping[str, ComponentStatus] = field(default_factory=lambda: MappingProxyType({}))
+    """The last status of each component, by name."""
+    numbers: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    """The paths of the numbers in the messages of each topic, once somebody has asked for them."""
+    curves: Curves = field(default_factory=Curves)
+    """The curves that are plotted; they grow. Another object has the curves of another run."""
+    curves_s: float = math.nan
+    """Where the curves of a recording end now, in s since the epoch; NaN while they are live."""
+    callees: tuple[Callee, ...] = ()
+    """What can be called."""
+    calls: Mapping[int, CallState] = field(default_factory=lambda: MappingProxyType({}))
+    """What has become of each call, by its number."""
     nodes: tuple[NodeTopics, ...] = ()
     planning: "Mapping[str, PlanningView]" = field(default_factory=lambda: MappingProxyType({}))
     """The move_groups, by namespace."""

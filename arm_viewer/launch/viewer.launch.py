@@ -1,17 +1,40 @@
 """Start the browser page for whatever is running."""
 
 from launch_py import DeclareLaunchArgument, LaunchDescription, Notified, ReadyPanel
+from launch_py.conditions import LaunchConfigurationNotEquals
 from launch_py.ros import Node, ParameterValue
-from launch_py.substitutions import LaunchConfiguration
+from launch_py.substitutions import Call, LaunchConfiguration
+
+LOCAL_HOST = "127.0.0.1"
+SWITCH = ["true", "false"]
+
+
+def address(host: str, port: str) -> str:
+    """Return where the page is; the page itself prints an address with a token."""
+    if host == LOCAL_HOST:
+        return f"http://{host}:{port}"
+    return f"the address with the token, which arm_viewer_node has printed (port {port} of {host})"
 
 
 def generate_launch_description() -> LaunchDescription:
     """Return the description with the page's node."""
-    port = LaunchConfiguration("viewer_port")
+    port, host = LaunchConfiguration("viewer_port"), LaunchConfiguration("viewer_host")
     return LaunchDescription(
         [
             DeclareLaunchArgument(
-                "viewer_port", default_value="8080", description="port of the page on 127.0.0.1"
+                "viewer_port", default_value="8080", description="port of the page"
+            ),
+            DeclareLaunchArgument(
+                "viewer_host",
+                default_value=LOCAL_HOST,
+                description="address that the page listens on; 0.0.0.0 serves other machines, by a "
+                "token that it prints",
+            ),
+            DeclareLaunchArgument(
+                "viewer_read_only",
+                default_value="false",
+                description="let nobody do more than look at the page",
+                choices=SWITCH,
             ),
             DeclareLaunchArgument(
                 "display_config",
@@ -22,7 +45,7 @@ def generate_launch_description() -> LaunchDescription:
                 "publish_joint_states",
                 default_value="false",
                 description="publish joint states from the page's sliders, without a running robot",
-                choices=["true", "false"],
+                choices=SWITCH,
             ),
             Node(
                 package="arm_viewer",
@@ -30,6 +53,8 @@ def generate_launch_description() -> LaunchDescription:
                 parameters=[
                     {
                         "port": ParameterValue(port, value_type=int),
+                        "host": ParameterValue(host, value_type=str),
+                        "read_only": LaunchConfiguration("viewer_read_only"),
                         "display_config": ParameterValue(
                             LaunchConfiguration("display_config"), value_type=str
                         ),
@@ -38,6 +63,10 @@ def generate_launch_description() -> LaunchDescription:
                 ],
                 ready=Notified(),
             ),
-            ReadyPanel(notes=[("the page", ["http://127.0.0.1:", port])]),
+            # Of a port that the page picks, the page itself tells the launch.
+            ReadyPanel(
+                notes=[("the page", Call(address, host, port))],
+                condition=LaunchConfigurationNotEquals("viewer_port", "0"),
+            ),
         ]
     )

@@ -3,16 +3,24 @@
 import asyncio
 import contextlib
 import json
+from typing import Any
 
 import pytest
 from websockets.exceptions import InvalidStatus
-from websockets.sync.client import connect
+from websockets.sync.client import ClientConnection
+from websockets.sync.client import connect as connect_within
 
+from arm_viewer.access import LOCAL_HOST as HOST
 from arm_viewer.channel import MAX_UNSENT_BYTES, PATH
 from arm_viewer.errors import BrowserMessageError
-from arm_viewer.page_server import HOST, page_server
+from arm_viewer.page_server import page_server
 
 TIMEOUT_S = 30.0
+
+
+def connect(address: str, **options: Any) -> ClientConnection:
+    """Open a WebSocket on a machine that may be busy."""
+    return connect_within(address, open_timeout=TIMEOUT_S, **options)
 
 
 @pytest.fixture(scope="module")

@@ -54,6 +54,11 @@ def test_a_reset_restarts_the_comparison():
     assert result.measured_s == 1.0
 
 
+def test_time_is_expected_to_go_on_as_before():
+    result = compare([(0.0, 50.0), (1.0, 50.5), (2.0, 51.0)])
+    assert result.at(2.2) == pytest.approx(51.1)
+
+
 def test_what_was_cleared_is_not_known():
     comparison = ClockComparison()
     comparison.add(0.0, 1.0)

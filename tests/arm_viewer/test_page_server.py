@@ -14,9 +14,10 @@ import websockets
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
+from arm_viewer.access import LOCAL_HOST as HOST
 from arm_viewer.channel import PATH
 from arm_viewer.errors import PageError
-from arm_viewer.page_server import HOST, PageServer, page_server
+from arm_viewer.page_server import PageServer, page_server
 
 TIMEOUT_S = 30.0
 FOREIGN = "http://evil.example"
@@ -116,7 +117,7 @@ def test_an_invalid_request_is_logged_as_a_sentence(server, said, request_line, 
 
 def test_a_connection_that_breaks_is_not_called_an_unreadable_message(server, said):
     address = server.url.replace("http", "ws", 1) + PATH
-    with connect(address, origin=server.url) as browser:
+    with connect(address, origin=server.url, open_timeout=TIMEOUT_S) as browser:
         browser.close(1011, "keepalive ping timeout")
     said_of_it = said.get(timeout=TIMEOUT_S).getMessage()
     assert said_of_it.startswith("lost the connection to a browser: received 1011")

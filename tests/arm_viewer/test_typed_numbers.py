@@ -5,8 +5,9 @@ import json
 import pytest
 from websockets.sync.client import connect
 
+from arm_viewer.access import LOCAL_HOST as HOST
 from arm_viewer.channel import PATH
-from arm_viewer.page_server import HOST, page_server
+from arm_viewer.page_server import page_server
 from arm_viewer.typed_numbers import KIND, number_typed, typed_number_handler
 
 

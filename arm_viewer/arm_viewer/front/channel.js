@@ -47,8 +47,9 @@ window.armChannel = (() => {
     };
   }
 
-  // The other scripts register first.
-  setTimeout(connect, 0);
+  // By then the other scripts have registered, and their parts of the page are there; what waits for
+  // viser's script comes later still.
+  document.addEventListener("readystatechange", connect, { once: true });
 
   return {
     on(kind, take) {
@@ -64,6 +65,10 @@ window.armChannel = (() => {
       if (!socket) return false;
       socket.send(JSON.stringify({ ...fields, kind }));
       return true;
+    },
+    /* Until at most so many bytes wait to be sent. */
+    async drained(most) {
+      while (socket && socket.bufferedAmount > most) await new Promise((go) => setTimeout(go, 20));
     },
   };
 })();

@@ -7,12 +7,17 @@
     { shown: ".", about: "one step", key: ".", repeats: true, act: () => step(1) },
     { shown: "Shift →", about: "10 steps", key: "ArrowRight", shift: true, repeats: true, act: () => step(10) },
     { shown: "Ctrl →", about: "100 steps", key: "ArrowRight", ctrl: true, act: () => step(100) },
+    { shown: "←", about: "1 s back in a recording", key: "ArrowLeft", repeats: true, replay: true },
+    { shown: "Shift ←", about: "10 s back in a recording", key: "ArrowLeft", shift: true, repeats: true, replay: true },
+    { shown: "M", about: "mark a moment of a recording", key: "m", replay: true },
     { shown: "↑", about: "faster", key: "ArrowUp", act: () => armTime.faster(1) },
     { shown: "↓", about: "slower", key: "ArrowDown", act: () => armTime.faster(-1) },
     { shown: "R", about: "reset everything and the clock", key: "r", act: () => armTime.reset(false) },
     { shown: "Shift R", about: "reset, and keep the clock", key: "r", shift: true, act: () => armTime.reset(true) },
     { shown: "Ctrl S", about: "save a snapshot", key: "s", ctrl: true, act: () => armTime.save("") },
     { shown: "L", about: "restore the last snapshot", key: "l", act: () => armTime.restoreLast() },
+    { shown: "P", about: "fold and unfold the plots", key: "p", act: () => armDock.toggle() },
+    { shown: "V", about: "a picture in place of the 3D view, and back", key: "v", act: () => armPicture.toggle() },
     { shown: "Esc", about: "emergency stop", key: "escape", act: () => armTime.stop() },
     { shown: "?", about: "this list", key: "?", act: show },
   ];
@@ -62,8 +67,9 @@
   function find(event) {
     const pressed = event.key.length > 1 && event.key !== "Escape" ? event.key : event.key.toLowerCase();
     return KEYS.find(
-      ({ key, shift, ctrl }) =>
+      ({ key, shift, ctrl, replay }) =>
         key === pressed &&
+        (!replay || armTimeline.isOpen()) &&
         Boolean(ctrl) === (event.ctrlKey || event.metaKey) &&
         // On many keyboards `?` and `.` need the shift key.
         (Boolean(shift) === event.shiftKey || key === "?" || key === "."),
@@ -81,7 +87,7 @@
       event.stopImmediatePropagation();
       if (event.repeat && (!found.repeats || event.timeStamp - acted < REPEAT_MS)) return;
       acted = event.timeStamp;
-      found.act();
+      if (!armTimeline.key(found.shown)) found.act();
     },
     true,
   );

@@ -4,7 +4,7 @@ from html import escape
 
 from viser import GuiApi
 
-from arm_viewer.panels.panel import PROBLEM_COLOUR, note
+from arm_viewer.panels.panel import PROBLEM_COLOUR, in_order, note
 from arm_viewer.requests import Configure, Request, Send, SwitchControllers
 from arm_viewer.snapshot import ListedController, Snapshot
 
@@ -85,7 +85,7 @@ class _Row:
         self._shown: ListedController | None = None
         self._text = gui.add_html("")
         self._button = gui.add_button("", hint=f"{controller.name} of {controller.manager}")
-        self._button.on_click(lambda _: self._change())
+        self._button.on_click(in_order(lambda _: self._change()))
 
     def update(self, controller: ListedController) -> None:
         if controller == self._shown:

@@ -1,13 +1,9 @@
-"""The ROS graph: a drawing of nodes and topics, and a table of topics."""
-
-import math
-from html import escape
+"""The ROS graph: a drawing of nodes and topics."""
 
 from viser import GuiApi
 
 from arm_node.drawing import NodeTopics, node_graph, to_svg
-from arm_viewer.requests import MeasureRates, Send
-from arm_viewer.snapshot import Snapshot, Topic
+from arm_viewer.snapshot import Snapshot
 
 WIDTH, HEIGHT = 600.0, 520.0
 STYLE = "overflow:auto;background:#fff"
@@ -38,47 +34,3 @@ class GraphPanel:
 
 def _picture_html(nodes: tuple[NodeTopics, ...]) -> str:
     return f'<div style="{STYLE}">{to_svg(node_graph(nodes))}</div>'
-
-
-class TopicPanel:
-    """A table of all topics, with their rates on request."""
-
-    def __init__(self, send: Send) -> None:
-        """Send with `send` whether rates are wanted."""
-        self._send = send
-        self._shown: tuple[Topic, ...] | None = None
-
-    def build(self, gui: GuiApi) -> None:
-        """Create the switch and the table."""
-        with gui.add_folder("Topics"):
-            measured = gui.add_checkbox(
-                "Rates", False, hint="measured by subscribing to every topic, including images"
-            )
-            measured.on_update(lambda _: self._send(MeasureRates(measured.value)))
-            self._table = gui.add_html("")
-
-    def update(self, snapshot: Snapshot) -> None:
-        """Update a changed table."""
-        if snapshot.topics != self._shown:
-            self._shown = snapshot.topics
-            self._table.content = _table_html(snapshot.topics)
-
-
-def _table_html(topics: tuple[Topic, ...]) -> str:
-    rows = "".join(_row(topic) for topic in topics) or "<tr><td>There are no topics.</td></tr>"
-    return (
-        '<table style="font-size:0.75rem;margin:0.25em 0.75em;width:calc(100% - 1.5em);'
-        f'font-variant-numeric:tabular-nums;border-collapse:collapse">{rows}</table>'
-    )
-
-
-def _row(topic: Topic) -> str:
-    rate = "" if math.isnan(topic.rate_hz) else f"{topic.rate_hz:.1f} Hz"
-    types = ", ".join(topic.types)
-    return (
-        '<tr style="border-top:1px solid rgba(128,128,128,0.25)">'
-        f'<td style="overflow-wrap:anywhere;padding:0.2em 0">{escape(topic.name)}<br/>'
-        f'<span style="opacity:0.6">{escape(types)} · {topic.publishers} pub, '
-        f"{topic.subscriptions} sub</span></td>"
-        f'<td style="text-align:right;white-space:nowrap;vertical-align:top">{rate}</td></tr>'
-    )

@@ -13,7 +13,7 @@ from viser import GuiApi, GuiEvent
 from arm_description.publishers.joint_state_merge import position_range
 from arm_description.urdf.robot import Joint
 from arm_viewer.joint_move import joint_drives
-from arm_viewer.panels.panel import note, show
+from arm_viewer.panels.panel import in_order, note, show
 from arm_viewer.requests import MoveJoints, Send
 from arm_viewer.snapshot import Description, JointReading, Snapshot
 from arm_viewer.typed_numbers import number_typed
@@ -52,6 +52,13 @@ class JointRange:
         whole = round(position, self._digits)
         # Adding 0.0 turns -0.0 into 0.0, which is shown without a sign.
         return min(max(whole, self.lower), self.upper) + 0.0
+
+    def followed(self, shown: float, position: float) -> float:
+        """Return what a slider that shows `shown` is to show of a joint at `position`.
+
+        A joint that trembles moves nothing; what is shown is at most 3/4 of a step off.
+        """
+        return shown if abs(position - shown) <= 0.75 * self.step else self.nearest(position)
 
     @property
     def _digits(self) -> int:
@@ -108,7 +115,7 @@ class HeldSlider:
         if not abs(position - self._position) < self._resolution:
             self._position = position
             self._moved_s = now_s
-        return None if self.is_held(now_s) else self._position
+        return None if self.is_held(now_s) else position
 
     def is_held(self, now_s: float) -> bool:
         """Return whether the slider stays where the user put it."""
@@ -207,7 +214,7 @@ class _RobotSliders:
             self._mimics = _MimicTable(gui, joints)
             self._buttons = gui.add_button_group("All", ("Center", "Randomize"), visible=False)
             self._hint = gui.add_html(note(NO_DRIVE), visible=False)
-        self._buttons.on_click(self._move_all)
+        self._buttons.on_click(in_order(self._move_all))
 
     def update(self, snapshot: Snapshot) -> None:
         namespace = self.description.namespace
@@ -258,7 +265,7 @@ class _JointSlider:
             initial_value=joint.centre,
             marks=tuple((end, f"{end:.2f}") for end in (joint.lower, joint.upper)),
         )
-        self._handle.on_update(self._moved)
+        self._handle.on_update(in_order(self._moved))
 
     @property
     def value(self) -> float:
@@ -298,10 +305,10 @@ class _JointSlider:
         shown = self._held.shown(reading.position, now_s)
         if shown is None or now_s - self._followed_s < FOLLOW_S:
             return
-        nearest = self.range.nearest(shown)
-        if nearest != self._handle.value:
+        followed = self.range.followed(self._handle.value, shown)
+        if followed != self._handle.value:
             self._followed_s = now_s
-            self._handle.value = nearest
+            self._handle.value = followed
 
     def _moved(self, event: GuiEvent[Any]) -> None:
         # Without a client the change came from `update`, which must not move the joint.

@@ -8,22 +8,24 @@ from viser import GuiApi, GuiButtonHandle, SceneApi
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.robot.model import JointPositions
 from arm_planning.scene.frames import LinkPoses
-from arm_viewer.panels.panel import PROBLEM_COLOUR, note
+from arm_viewer.panels.panel import PROBLEM_COLOUR, distinct, in_order, note, show
 from arm_viewer.panels.path_player import PathPlayer
 from arm_viewer.panels.robot_panel import link_frames
 from arm_viewer.panels.scene_object_panel import SceneObjectPanel
-from arm_viewer.planning import Activity, PlanningView, default_group, named_poses
+from arm_viewer.panels.tip_fields import TipFields
+from arm_viewer.planning import Activity, JogView, PlanningView, default_group, named_poses
 from arm_viewer.planning_requests import (
     DragTip,
     ExecutePlan,
+    JogTip,
     PlanMotion,
     SetGoal,
     StopMotion,
 )
 from arm_viewer.requests import Request, Send
-from arm_viewer.scene.frames import Frames
+from arm_viewer.scene.drag_handle import DragHandle
+from arm_viewer.scene.frames import Frames, node_name
 from arm_viewer.scene.ghost import Colour, Ghost
-from arm_viewer.scene.tip_handle import TipHandle
 from arm_viewer.snapshot import Snapshot
 
 GOAL_COLOUR: Colour = (240, 140, 30)
@@ -44,7 +46,7 @@ class MotionPanel:
         self._frames = frames
         self._send = send
         self._ghost = Ghost(scene, f"{view.namespace}/goal", view.model, GOAL_COLOUR)
-        self._handle = TipHandle(scene, f"{view.namespace}/tip")
+        self._handle = DragHandle(scene, f"/planning/{node_name(f'{view.namespace}/tip')}")
         title = f"Motion of {view.namespace}" if view.namespace else "Motion"
         self._folder = gui.add_folder(title)
         with self._folder:
@@ -97,9 +99,17 @@ class MotionPanel:
         self._drags = gui.add_checkbox(
             "Drag tip", False, hint="arrows and rings at the goal's tip; drag them"
         )
-        self._texts = {"goal": gui.add_html("", visible=False)}
-        self._group.on_update(lambda _: self._choose_group())
-        self._pose.on_update(lambda event: self._choose_pose(event.client_id))
+        self._jogs = gui.add_checkbox(
+            "Move robot",
+            False,
+            visible=False,
+            hint="the robot itself follows the tip, by servo_node, as long as you drag",
+        )
+        self._drag = 0
+        self._tip = TipFields(gui, self._set_tip)
+        self._texts = {place: gui.add_html("", visible=False) for place in ("jog", "goal")}
+        self._group.on_update(in_order(lambda _: self._choose_group()))
+        self._pose.on_update(in_order(lambda event: self._choose_pose(event.client_id)))
 
     def _build_motion(self, gui: GuiApi) -> None:
         self._velocity = gui.add_slider(
@@ -118,17 +128,17 @@ class MotionPanel:
         self._execute = gui.add_button("Execute", hint="move along the plan that is shown")
         stop = gui.add_button("Stop", color="red", hint="stop planning, and every planned motion")
         self._texts["said"] = gui.add_html("", visible=False)
-        self._plan.on_click(lambda _: self._send(self._wish(executes=False)))
-        self._move.on_click(lambda _: self._send(self._wish(executes=True)))
-        self._execute.on_click(lambda _: self._send(ExecutePlan(self._namespace)))
-        stop.on_click(lambda _: self._send(StopMotion(self._namespace)))
+        self._plan.on_click(in_order(lambda _: self._send(self._wish(executes=False))))
+        self._move.on_click(in_order(lambda _: self._send(self._wish(executes=True))))
+        self._execute.on_click(in_order(lambda _: self._send(ExecutePlan(self._namespace))))
+        stop.on_click(in_order(lambda _: self._send(StopMotion(self._namespace))))
 
     def _wish(self, executes: bool) -> Request:
         velocity, acceleration = self._velocity.value, self._acceleration.value
         return PlanMotion(self._namespace, velocity, acceleration, executes)
 
     def _pose_names(self) -> tuple[str, ...]:
-        return (NO_POSE, PRESENT, *named_poses(self._model, self._group.value))
+        return distinct((NO_POSE, PRESENT, *named_poses(self._model, self._group.value)))
 
     def _choose_group(self) -> None:
         self._pose.options = self._pose_names()
@@ -158,16 +168,49 @@ class MotionPanel:
         self, view: PlanningView, origin: RigidTransform, present: Mapping[str, float]
     ) -> None:
         group, goal = self._model.groups.get(self._group.value), view.goal
+        self._tip.show(group, lambda link: LinkPoses(self._model, present)[link])
+        show(self._jogs, view.jog is not None and self._drags.value)
+        is_jogged = self._show_jog(view.jog)
         if group is None or not group.tip or not self._drags.value:
             self._handle.hide()
             return
         pulled = self._handle.pulled()
+        if is_jogged:
+            self._jog(group.name, origin)
         if pulled is not None:
             self._pose.value = NO_POSE
             self._send(DragTip(self._namespace, group.name, origin.inverse().then(pulled)))
-        known = goal.positions if goal is not None and goal.group == group.name else {}
+        known: JointPositions = {}
+        if goal is not None and goal.group == group.name and not is_jogged:
+            known = goal.positions
         tip = LinkPoses(self._model, {**present, **known})[group.tip]
         self._handle.show(origin.then(tip))
+
+    def _set_tip(self, pose: RigidTransform) -> None:
+        self._pose.value = NO_POSE
+        self._send(DragTip(self._namespace, self._group.value, pose, avoids=True))
+
+    def _show_jog(self, jog: JogView | None) -> bool:
+        """Say what the jog does; return whether the robot follows the handle."""
+        if jog is None or not self._jogs.visible or not self._jogs.value:
+            self._say("jog", "", "inherit")
+            return False
+        if jog.group != self._group.value:
+            self._say("jog", f"servo_node jogs the group '{jog.group}'.", PROBLEM_COLOUR)
+            return False
+        self._say("jog", jog.said, PROBLEM_COLOUR if jog.is_stopped else "inherit")
+        return True
+
+    def _jog(self, group: str, origin: RigidTransform) -> None:
+        """Send the robot to the handle, again and again: it stops when nothing comes any more."""
+        held = self._handle.held
+        if held is None:
+            return
+        if held.drag != self._drag:
+            # The ghost starts where the robot is.
+            self._drag = held.drag
+            self._send(SetGoal(self._namespace, group, {}))
+        self._send(JogTip(self._namespace, origin.inverse().then(held.pose), held.drag))
 
     def _say(self, place: str, sentence: str, colour: str) -> None:
         content = note(sentence, colour)

@@ -1,7 +1,8 @@
 """The interface of every panel of the page."""
 
+from collections.abc import Callable, Coroutine, Iterable
 from html import escape
-from typing import Protocol
+from typing import Any, Protocol
 
 from viser import GuiApi
 
@@ -17,6 +18,23 @@ def note(text: str, colour: str = "inherit") -> str:
         f'<div style="color:{colour};font-size:0.8rem;line-height:1.35;padding:0.25em 0.75em;'
         f'overflow-wrap:anywhere">{lines}</div>'
     )
+
+
+def distinct(options: Iterable[str]) -> tuple[str, ...]:
+    """Return each option of a list to choose from once: doubled, it takes the whole page down."""
+    return tuple(dict.fromkeys(options))
+
+
+def in_order(serve: Callable[[Any], object]) -> Callable[[Any], Coroutine[Any, Any, None]]:
+    """Return a callback that serves each event at once, in the order in which the user made them.
+
+    viser calls what is not a coroutine function in a pool of threads, late and in any order.
+    """
+
+    async def called(event: Any) -> None:
+        serve(event)
+
+    return called
 
 
 class Hideable(Protocol):
@@ -40,8 +58,8 @@ def show(element: Hideable, shown: bool) -> None:
 class Panel(Protocol):
     """A panel of the page; used only in viser's event loop.
 
-    Callbacks of its elements run in viser's threads. They only send a request, or store a plain
-    value that the next `update` reads.
+    So are the callbacks of its elements, which `in_order` makes of functions. One that takes long
+    runs in a thread of viser, and puts its result into a queue for `update`.
     """
 
     def build(self, gui: GuiApi) -> None:

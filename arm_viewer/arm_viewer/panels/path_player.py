@@ -4,6 +4,7 @@ from viser import GuiApi, SceneApi
 
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.robot.model import JointPositions, PlanningModel
+from arm_viewer.panels.panel import in_order
 from arm_viewer.planning import ShownPlan
 from arm_viewer.scene.ghost import Colour, Ghost, Trail
 
@@ -27,8 +28,8 @@ class PathPlayer:
         self._origin: RigidTransform | None = None
         self._started_s: float | None = None
         self._is_wanted = False
-        self._slider.on_update(lambda event: self._pull(event.client_id))
-        self._play.on_click(lambda _: self._want())
+        self._slider.on_update(in_order(lambda event: self._pull(event.client_id)))
+        self._play.on_click(in_order(lambda _: self._want()))
 
     def update(
         self, plan: ShownPlan | None, origin: RigidTransform, present: JointPositions, now_s: float
@@ -79,8 +80,6 @@ class PathPlayer:
         self._slider.value = END if share == 1.0 else round(END * share / STEP) * STEP
         if share == 1.0:
             self._started_s = None
-
-    # Called in viser's threads.
 
     def _pull(self, client_id: int | None) -> None:
         # Without a client the change came from `_advance`.

@@ -1,13 +1,14 @@
 """The robots in the 3D view, and the switches for their layers."""
 
-from collections.abc import Collection, Container, Mapping
+import time
+from collections.abc import Callable, Collection, Container, Mapping
 from dataclasses import dataclass
 
 from viser import GuiApi, GuiCheckboxHandle, SceneApi
 
 from arm_description.urdf.robot import Robot
 from arm_node.names import listing
-from arm_viewer.panels.panel import PROBLEM_COLOUR, note
+from arm_viewer.panels.panel import PROBLEM_COLOUR, in_order, note
 from arm_viewer.scene.cameras import Cameras
 from arm_viewer.scene.first_view import Contents, FirstView
 from arm_viewer.scene.frames import Frames, assumed_transforms, node_name, unknown_joints
@@ -47,14 +48,24 @@ _Known = tuple[
 class RobotPanel:
     """Draws the robots of the 3D view as described, at their poses in /tf."""
 
-    def __init__(self, scene: SceneApi, frames: Frames, poses: Poses, view: FirstView) -> None:
-        """Draw into this scene, below these frames, move things by `poses`, and fit this view."""
+    def __init__(
+        self,
+        scene: SceneApi,
+        frames: Frames,
+        poses: Poses,
+        view: FirstView,
+        on_click: Callable[[str], None],
+    ) -> None:
+        """Draw into this scene, below these frames, move things by `poses`, and fit this view.
+
+        `on_click` takes the name of a thing of the world that was clicked, in viser's threads.
+        """
         self._scene = scene
         self._poses = poses
         self._view = view
         self._fit_for: set[int] = set()
         self._frames = frames
-        self._markers = Markers(scene, frames, poses)
+        self._markers = Markers(scene, frames, poses, on_click)
         self._cameras = Cameras(scene, frames)
         self._robots: dict[str, _Shown] = {}
         self._completed_for: _Known | None = None
@@ -74,7 +85,7 @@ class RobotPanel:
             )
             self._world = gui.add_checkbox("World", True, hint="objects around the robots")
             fit = gui.add_button("Fit view", color="gray", hint="all robots and nearby objects")
-        fit.on_click(lambda event: self._fit_for.add(event.client_id or 0))
+        fit.on_click(in_order(lambda event: self._fit_for.add(event.client_id or 0)))
         self._shown_problem = ""
         self._problem = gui.add_html("", visible=False)
 
@@ -92,7 +103,7 @@ class RobotPanel:
         self._frames.show_names(self._names.value)
         self._markers.update(snapshot.markers)
         self._markers.show(self._world.value)
-        self._poses.send(snapshot.made_s)
+        self._poses.send(time.monotonic())
         self._cameras.update(snapshot.cameras, self._views.value)
         for topic in self._robots.keys() - snapshot.descriptions.keys():
             self._robots.pop(topic).model.remove()

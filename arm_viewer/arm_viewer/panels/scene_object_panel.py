@@ -8,17 +8,16 @@ from arm_node.rigid_transform import RigidTransform
 from arm_planning.robot.model import PlanningModel
 from arm_planning.scene.frames import LinkPoses
 from arm_planning.scene.scene import PlanningScene
-from arm_viewer.new_object import ObjectFields, ObjectKind, new_object
-from arm_viewer.panels.panel import PROBLEM_COLOUR, note
+from arm_viewer.new_object import ObjectFields, new_object
+from arm_viewer.panels.panel import PROBLEM_COLOUR, in_order, note
 from arm_viewer.planning import PlanningView
 from arm_viewer.planning_requests import AddObject, RemoveObject
 from arm_viewer.requests import Send
 from arm_viewer.scene.planning_objects import PlanningObjects
+from arm_viewer.world.shape_fields import KINDS, SIZE_HINT, ObjectKind
 
 NOTHING = "(none)"
 EMPTY = "The planning scene has no objects."
-KINDS = {kind.word: kind for kind in ObjectKind}
-SIZE_HINT = "in m; " + "; ".join(f"{each.word}: {' '.join(each.lengths)}" for each in ObjectKind)
 POSITION_M, NO_TURN = "0.2 0 0.1", "0 0 0"
 
 
@@ -41,7 +40,7 @@ class SceneObjectPanel:
         self._list = gui.add_html(note(EMPTY))
         self._chosen = gui.add_dropdown("Object", options(()))
         remove = gui.add_button("Remove", color="gray")
-        remove.on_click(lambda _: self._remove())
+        remove.on_click(in_order(lambda _: self._remove()))
         self._build_fields(gui)
         self._problem = gui.add_html("", visible=False)
 
@@ -77,10 +76,8 @@ class SceneObjectPanel:
         )
         self._rpy = gui.add_text("Orientation", NO_TURN, hint="roll pitch yaw in rad")
         add = gui.add_button("Add")
-        self._kind.on_update(lambda _: self._choose_kind())
-        add.on_click(lambda _: self._add())
-
-    # Called in viser's threads.
+        self._kind.on_update(in_order(lambda _: self._choose_kind()))
+        add.on_click(in_order(lambda _: self._add()))
 
     def _choose_kind(self) -> None:
         kind = KINDS[self._kind.value]

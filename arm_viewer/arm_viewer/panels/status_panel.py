@@ -13,12 +13,15 @@ from arm_viewer.snapshot import Snapshot
 SILENT_S = 2.0
 WAITING = "Waiting for a robot on /robot_description"
 GONE = "The simulation has ended; the page continues when it restarts"
+NO_ROBOT = "No robot up to here: the recording has no message on /robot_description"
 LOST = "{topic} is no longer published; the page continues when it is"
 SILENT = "Nothing on {topic} for {silence:.0f} s: what is shown of its joints is old"
 
 
 def status_message(snapshot: Snapshot) -> str:
     """Return the problem to report to the user, empty if there is none."""
+    if snapshot.replay:
+        return "" if snapshot.descriptions else NO_ROBOT
     if not snapshot.descriptions:
         return GONE if snapshot.lost else WAITING
     for topic in sorted(snapshot.lost - snapshot.descriptions.keys()):

@@ -14,6 +14,7 @@ from viser import CommandHandle, GuiApi
 
 from arm_viewer.channel import Browser, Channel, Message
 from arm_viewer.errors import BrowserMessageError
+from arm_viewer.panels.panel import in_order
 from arm_viewer.requests import (
     Request,
     ResetRun,
@@ -37,6 +38,9 @@ MIN_LAG_S = 0.05
 MAX_STEPS = 10_000
 MAX_SPEED = 1000.0
 
+RECORDING = "recording"
+"""The state that the bar shows for a moment of a recording."""
+REPLAYED = "This is a recording: go back to live first"
 NO_SIMULATION = "No simulation: {what}"
 PLAYING = "Pause first: only a paused simulation takes steps"
 NO_WORLD = "No world is loaded"
@@ -56,13 +60,13 @@ def bar_fields(snapshot: Snapshot, now_s: float) -> dict[str, Any]:
     """
     run, answer = snapshot.run, snapshot.control_answer
     return {
-        "state": "" if run is None else run.state,
+        "state": RECORDING if snapshot.replay else "" if run is None else run.state,
         "speed": None if run is None or math.isnan(run.speed) else run.speed,
         "snapshots": [] if run is None else [[s.name, s.description] for s in run.snapshots],
         "stopped": [name or "/" for name, active in sorted(snapshot.stops.items()) if active],
         "reasons": reasons(snapshot),
         "answer": {"number": answer.number, "text": answer.text, "done": answer.is_done},
-        "stale": now_s - snapshot.made_s > STALE_S,
+        "stale": not snapshot.replay and now_s - snapshot.made_s > STALE_S,
     }
 
 
@@ -71,6 +75,10 @@ def reasons(snapshot: Snapshot) -> dict[str, str]:
     run = snapshot.run
     found = {"stop": "" if snapshot.stops else NO_STOP}
     found["release"] = "" if any(snapshot.stops.values()) else RELEASED
+    if snapshot.replay:
+        return found | dict.fromkeys(
+            ("play", "step", "speed", "reset", "save", "restore"), REPLAYED
+        )
     if run is None:
         missing = {
             "play": "time cannot be paused",
@@ -97,8 +105,8 @@ def clock_fields(snapshot: Snapshot, now_s: float) -> dict[str, Any]:
     clock, run = snapshot.time, snapshot.run
     if clock is None:
         return {"time_s": None, "factor": None, "lag_s": None, "silent_s": None}
-    silent_s = now_s - clock.received_s
-    waits = run is not None and not run.is_playing
+    silent_s = 0.0 if snapshot.replay else now_s - clock.received_s
+    waits = snapshot.replay != "" or (run is not None and not run.is_playing)
     # At another speed than real time, the distance from wall time is no lag.
     lags = run is not None and run.is_playing and run.speed == 1.0 and clock.lag_s >= MIN_LAG_S
     return {
@@ -264,7 +272,7 @@ class _PaletteCommand:
         self._reason = ""
         # viser would fire a hotkey of its own on a focused button; the bar's script has the keys.
         self._handle: CommandHandle = gui.add_command(label, description=key or None)
-        self._handle.on_trigger(serve)
+        self._handle.on_trigger(in_order(serve))
 
     def update(self, impossible: Mapping[str, str]) -> None:
         reason = impossible[self._needs]

@@ -6,6 +6,7 @@ import uuid
 from collections.abc import Callable
 from typing import Any
 
+from action_msgs.msg import GoalStatus
 from action_msgs.srv import CancelGoal
 from rclpy.node import Node
 from unique_identifier_msgs.msg import UUID
@@ -35,12 +36,27 @@ class ActionCaller:
         self._goal_id: UUID | None = None
         self._end: End | None = None
         self._latest_s = math.inf
-        self._is_canceled = False
+        self._is_canceled = self._is_accepted = False
+        self.status = GoalStatus.STATUS_UNKNOWN
+        """The action_msgs/msg/GoalStatus with which the last goal ended."""
 
     @property
     def is_busy(self) -> bool:
         """Whether a goal is under way."""
         return self._end is not None
+
+    @property
+    def is_accepted(self) -> bool:
+        """Whether the server has accepted the goal under way."""
+        return self.is_busy and self._is_accepted
+
+    def is_ready(self) -> bool:
+        """Return whether the server is available."""
+        return all(caller.is_ready() for caller in (self._send, self._get, self._cancel))
+
+    def is_goal(self, goal_id: UUID) -> bool:
+        """Return whether an identifier is that of the goal under way."""
+        return self.is_busy and goal_id == self._goal_id
 
     def start(self, goal: Any, end: End, max_wait_s: float = math.inf) -> None:
         """Send a goal; a goal that is under way is forgotten.
@@ -53,7 +69,7 @@ class ActionCaller:
         self._get.forget()
         self._goal_id = UUID(uuid=list(uuid.uuid4().bytes))
         self._end = end
-        self._is_canceled = False
+        self._is_canceled = self._is_accepted = False
         self._latest_s = time.monotonic() + max_wait_s
         request = self._impl.SendGoalService.Request(goal_id=self._goal_id, goal=goal)
         if not self._send.ask(request, self._take_acceptance):
@@ -87,11 +103,16 @@ class ActionCaller:
         if not answer.accepted:
             self._finish(None, f"{self._action} has refused the goal")
             return
+        self._is_accepted = True
         request = self._impl.GetResultService.Request(goal_id=self._goal_id)
-        if not self._get.ask(request, lambda answer: self._finish(answer.result, "")):
+        if not self._get.ask(request, self._take_result):
             self._finish(None, f"the server of {self._action} has ended")
         elif self._is_canceled:
             self.cancel()
+
+    def _take_result(self, answer: Any) -> None:
+        self.status = answer.status
+        self._finish(answer.result, "")
 
     def _finish(self, result: Any, problem: str) -> None:
         end, self._end = self._end, None

@@ -46,7 +46,7 @@ class CameraObserver:
             message = reader.take_newest()
             if message is None:
                 continue
-            view = _view(message)
+            view = camera_view(message)
             if view is None:
                 views.pop(topic, None)
             else:
@@ -58,7 +58,7 @@ class CameraObserver:
         self.views = MappingProxyType(views)
 
 
-def _view(message: CameraInfo) -> CameraView | None:
+def camera_view(message: CameraInfo) -> CameraView | None:
     """Return the view, or None if the intrinsics are zero or not finite."""
     fx, _, cx, _, fy, cy = (float(value) for value in message.k[:6])
     frame = frame_name(message.header.frame_id)
@@ -102,12 +102,13 @@ class ImageObserver:
         for topic, reader in self._readers.items():
             message = reader.take_newest()
             if message is not None:
-                new[topic] = _picture(message)
+                new[topic] = picture_of(message)
         if new:
             self.pictures = MappingProxyType({**self.pictures, **new})
 
 
-def _picture(message: Image) -> Picture:
+def picture_of(message: Image) -> Picture:
+    """Return an image as received."""
     return Picture(
         encoding=message.encoding,
         width=message.width,

@@ -21,9 +21,10 @@ JOINTS = "joints"
 class ControllerObserver:
     """Keeps the managers' latest lists of controllers, in their order."""
 
-    def __init__(self, node: Node) -> None:
-        """Start without managers."""
+    def __init__(self, node: Node, is_watched: Callable[[], bool]) -> None:
+        """Start without managers; ask again only while somebody watches."""
         self._node = node
+        self._is_watched = is_watched
         self._managers: dict[str, _ListedManager] = {}
 
     @property
@@ -39,7 +40,8 @@ class ControllerObserver:
         for name in sorted(found - self._managers.keys()):
             self._managers[name] = _ListedManager(self._node, name)
         for manager in self._managers.values():
-            manager.ask()
+            if self._is_watched() or not manager.controllers:
+                manager.ask()
 
     def collect(self, now_s: float) -> None:
         """Do nothing: answers arrive in callbacks."""

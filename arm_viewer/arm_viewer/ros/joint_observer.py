@@ -46,7 +46,7 @@ class JointStateObserver:
         for reader in self._topics.readers():
             joints: dict[str, JointReading] = {}
             for message in reader.take_all():
-                joints.update(_read(message))
+                joints.update(joint_readings(message))
             received_s = self._received_s.setdefault(reader.topic, {})
             received_s.update(dict.fromkeys(joints, now_s))
             outdated_s = reader.outdated_before(now_s)
@@ -71,7 +71,8 @@ class JointStateObserver:
         self.joint_states = MappingProxyType(by_topic)
 
 
-def _read(message: JointState) -> dict[str, JointReading]:
+def joint_readings(message: JointState) -> dict[str, JointReading]:
+    """Return the values of each joint that a message names."""
     columns = [
         _column(values, len(message.name))
         for values in (message.position, message.velocity, message.effort)

@@ -48,7 +48,7 @@ class MarkerObserver:
                 continue
             markers = dict(self.markers)
             for marker in received:
-                name = _take(markers, reader.topic, marker)
+                name = apply_marker(markers, reader.topic, marker)
                 self._received_s[name] = now_s
             for name in [name for name in markers if name.startswith(f"{reader.topic}/")]:
                 if self._received_s[name] < outdated_s:
@@ -57,8 +57,8 @@ class MarkerObserver:
             self.markers = MappingProxyType(markers)
 
 
-def _take(markers: dict[str, Marker], topic: str, message: MarkerMessage) -> str:
-    """Apply a marker message, and return the name of its marker."""
+def apply_marker(markers: dict[str, Marker], topic: str, message: MarkerMessage) -> str:
+    """Apply a marker message to the markers, and return the name of its marker."""
     name = f"{topic}/{message.ns}/{message.id}"
     if message.action == MarkerMessage.DELETEALL:
         for known in [known for known in markers if known.startswith(f"{topic}/")]:

@@ -139,6 +139,8 @@ class MotionCaller:
     def _take_plan(self, result: MoveGroup.Result | None, problem: str, executes: bool) -> None:
         self.activity = Activity.NONE
         if result is None:
+            # What was displayed meanwhile cannot be executed.
+            self.plan = None
             self._say(problem, failed=True)
             return
         path = self._path(result.trajectory_start, [result.planned_trajectory])

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 
 from rclpy.node import Node
 
@@ -12,6 +13,7 @@ from arm_viewer.planning_requests import (
     AddObject,
     DragTip,
     ExecutePlan,
+    JogTip,
     PlanMotion,
     PlanningRequest,
     RemoveObject,
@@ -21,7 +23,9 @@ from arm_viewer.planning_requests import (
 from arm_viewer.ros.goal_checker import GoalChecker
 from arm_viewer.ros.motion_caller import MotionCaller
 from arm_viewer.ros.planning_scene_client import PlanningSceneClient
+from arm_viewer.ros.tip_jogger import TipJogger, is_served
 from arm_viewer.ros.tip_solver import TipPose, TipSolver
+from arm_viewer.snapshot import SimulationTime
 
 
 class ObservedMoveGroup:
@@ -38,6 +42,7 @@ class ObservedMoveGroup:
         namespace: str,
         model: PlanningModel,
         present: Callable[[], Mapping[str, float]],
+        clock: Callable[[], SimulationTime | None],
     ) -> None:
         """Create the clients.
 
@@ -47,10 +52,14 @@ class ObservedMoveGroup:
             namespace: of the move_group.
             model: the robot.
             present: returns the present positions of joints.
+            clock: returns the simulation time; None without a simulation.
         """
         self.view = PlanningView(namespace, model)
+        self._make_jogger = partial(TipJogger, node, polled, namespace, model, clock)
+        self._jogger: TipJogger | None = None
         self._model = model
         self._present = present
+        self._node = node
         self._motions = MotionCaller(node, polled, namespace, model)
         self._checker = GoalChecker(node, namespace, self._take_checked)
         self._scene = PlanningSceneClient(node, polled, namespace, model)
@@ -63,6 +72,9 @@ class ObservedMoveGroup:
                 self._set_goal(request.group, request.positions)
             case DragTip():
                 self._drag(request)
+            case JogTip():
+                if self._jogger is not None:
+                    self._jogger.jog(request)
             case PlanMotion():
                 self._motions.start(self.view.goal, request)
             case ExecutePlan():
@@ -80,6 +92,9 @@ class ObservedMoveGroup:
         self._checker.ask()
         self._motions.collect()
         self._scene.collect()
+        jogger = self._jogger
+        if jogger is not None:
+            jogger.collect()
         motions, scene = self._motions, self._scene
         view = replace(
             self.view,
@@ -89,6 +104,7 @@ class ObservedMoveGroup:
             failed=motions.failed,
             scene=scene.scene,
             scene_problem=scene.problem,
+            jog=None if jogger is None else jogger.view,
         )
         # By identity, because scenes may be large.
         if view.scene is not self.view.scene and view.goal is not None:
@@ -96,8 +112,14 @@ class ObservedMoveGroup:
         self.view = view
 
     def check(self) -> None:
-        """End what is late; call it periodically."""
+        """End what is late, and look for a servo_node; call it periodically."""
         self._motions.check()
+        is_there = is_served(self._node, self.view.namespace)
+        if is_there and self._jogger is None:
+            self._jogger = self._make_jogger()
+        elif not is_there and self._jogger is not None:
+            self._jogger.close()
+            self._jogger = None
 
     def close(self) -> None:
         """Destroy the clients."""
@@ -105,6 +127,8 @@ class ObservedMoveGroup:
         self._checker.close()
         self._solver.close()
         self._scene.close()
+        if self._jogger is not None:
+            self._jogger.close()
 
     def _set_goal(self, name: str, positions: JointPositions) -> None:
         group = self._model.groups.get(name)
@@ -119,7 +143,8 @@ class ObservedMoveGroup:
         group = self._model.groups.get(request.group)
         if group is not None and group.tip:
             root = self._model.robot.root
-            self._solver.solve(TipPose(group.name, group.tip, root, request.pose))
+            wanted = TipPose(group.name, group.tip, root, request.pose, request.avoids)
+            self._solver.solve(wanted)
 
     def _seed(self, name: str) -> JointPositions:
         """Return the goal of a group, or the present positions where it has none."""

@@ -16,7 +16,7 @@ from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.planning_requests import PlanningRequest
 from arm_viewer.ros.observer import TopicTypes, served
 from arm_viewer.ros.topic_reader import TopicGroup
-from arm_viewer.snapshot import Snapshot
+from arm_viewer.snapshot import SimulationTime, Snapshot
 
 if TYPE_CHECKING:
     from arm_viewer.planning import PlanningView
@@ -37,12 +37,17 @@ class PlanningObserver:
     """
 
     def __init__(
-        self, node: Node, polled: PolledSubscriptions, latest: Callable[[], Snapshot]
+        self,
+        node: Node,
+        polled: PolledSubscriptions,
+        latest: Callable[[], Snapshot],
+        clock: Callable[[], SimulationTime | None],
     ) -> None:
-        """Observe the robots of the latest snapshot."""
+        """Observe the robots of the latest snapshot, which live in the time of a clock, if any."""
         self._node = node
         self._polled = polled
         self._latest = latest
+        self._clock = clock
         self._topics = TopicGroup(node, polled, String, SEMANTIC, _LATCHED)
         self._texts: dict[str, str] = {}
         self._clients: dict[str, ObservedMoveGroup] = {}
@@ -116,7 +121,7 @@ class PlanningObserver:
             _logger.warning("motions of %s are not shown: %s", namespace or "/", error)
             return None
         present = partial(self._positions, namespace)
-        return ObservedMoveGroup(self._node, self._polled, namespace, model, present)
+        return ObservedMoveGroup(self._node, self._polled, namespace, model, present, self._clock)
 
     def _positions(self, namespace: str) -> dict[str, float]:
         states = self._latest().joint_states.get(f"{namespace}/joint_states")

@@ -48,7 +48,7 @@ class DescriptionObserver:
             topic, message = reader.topic, reader.take_newest()
             if message is not None:
                 self._received_s[topic] = now_s
-                self._keep({**self.descriptions, topic: _described(topic, message.data)})
+                self._keep({**self.descriptions, topic: described(topic, message.data)})
             elif self._received_s.get(topic, math.inf) < reader.outdated_before(now_s):
                 del self._received_s[topic]
                 self._keep({t: d for t, d in self.descriptions.items() if t != topic})
@@ -58,7 +58,8 @@ class DescriptionObserver:
         self.descriptions = MappingProxyType(descriptions)
 
 
-def _described(topic: str, text: str) -> Description:
+def described(topic: str, text: str) -> Description:
+    """Return the robot of a description topic, or why its text is not a robot."""
     namespace = topic.removesuffix(f"/{DESCRIPTION_WORD}")
     try:
         # The text may name the folders of its meshes, so each robot needs its own finder.
@@ -103,7 +104,7 @@ class TransformObserver:
         outdated: set[str] = set()
         for reader, received_s in zip(self._topics, self._received_s, strict=True):
             for message in reader.take_all():
-                read = _transforms_in(message)
+                read = transforms_in(message)
                 new.update(read)
                 received_s.update(dict.fromkeys(read, now_s))
             outdated_s = reader.outdated_before(now_s)
@@ -119,7 +120,8 @@ class TransformObserver:
             )
 
 
-def _transforms_in(message: TFMessage) -> dict[str, Transform]:
+def transforms_in(message: TFMessage) -> dict[str, Transform]:
+    """Return the valid transforms of a message, by child frame."""
     result: dict[str, Transform] = {}
     for stamped in message.transforms:
         parent, child = frame_name(stamped.header.frame_id), frame_name(stamped.child_frame_id)

@@ -31,9 +31,10 @@ class RunObserver:
         status: what the simulation says; None if none answers.
     """
 
-    def __init__(self, node: Node) -> None:
-        """Start without a simulation."""
+    def __init__(self, node: Node, is_watched: Callable[[], bool]) -> None:
+        """Start without a simulation; ask only while somebody watches."""
         self._node = node
+        self._is_watched = is_watched
         self._questions: dict[str, _Question] = {}
         self._due: set[str] = set()
         self._looks = 0
@@ -49,7 +50,7 @@ class RunObserver:
             self._begin()
         elif not found and self._questions:
             self._end()
-        if found:
+        if found and self._is_watched():
             self._due.add("state")
             if self._looks % RARE == 0:
                 self.ask_again()

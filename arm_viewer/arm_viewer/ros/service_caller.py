@@ -9,6 +9,8 @@ from rclpy.task import Future
 
 MAX_WAIT_S = 3.0
 """After this time a response counts as lost, and the next call is allowed."""
+MAX_PATIENCE = 16.0
+"""A server that was late once is waited for twice as long the next time, up to so many times."""
 
 
 class ServiceCaller:
@@ -31,6 +33,7 @@ class ServiceCaller:
         self._client = node.create_client(service_class, service)
         self._pending: Future | None = None
         self._asked_s = 0.0
+        self._patience = 1.0
 
     def ask(self, request: Any, then: Callable[[Any], None]) -> bool:
         """Call the service and pass its response to `then`; return whether the call was sent.
@@ -39,6 +42,9 @@ class ServiceCaller:
         """
         if self._pending is not None and not self.is_overdue():
             return False
+        if self.is_overdue():
+            # Else a busy machine, on which every answer is late, would never have one.
+            self._patience = min(2.0 * self._patience, MAX_PATIENCE)
         self.forget()
         if not self.is_ready():
             return False
@@ -54,7 +60,7 @@ class ServiceCaller:
     def is_overdue(self) -> bool:
         """Return whether a response has not arrived in time."""
         late_s = time.monotonic() - self._asked_s
-        return self._pending is not None and late_s >= self._max_wait_s
+        return self._pending is not None and late_s >= self._patience * self._max_wait_s
 
     def close(self) -> None:
         """Destroy the client; a pending response is dropped."""
@@ -69,5 +75,5 @@ class ServiceCaller:
 
     def _answer(self, future: Future, then: Callable[[Any], None]) -> None:
         if future is self._pending:
-            self._pending = None
+            self._pending, self._patience = None, 1.0
             then(future.result())

@@ -1,7 +1,7 @@
 """Asks one move_group for joint positions that bring a group's tip to a pose."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from builtin_interfaces.msg import Duration
 from moveit_msgs.msg import MoveItErrorCodes
@@ -14,8 +14,9 @@ from arm_planning.ros.convert import pose_message
 from arm_viewer.ros.goal_checker import state_message
 from arm_viewer.ros.service_caller import ServiceCaller
 
-TIMEOUT = Duration(nanosec=50_000_000)
-"""How long a pose that cannot be reached may hold up the next one."""
+TIMEOUT, AVOIDING_TIMEOUT = Duration(nanosec=50_000_000), Duration(sec=2)
+"""How long a pose that cannot be reached may hold up the next one; one that is looked for in any
+posture comes alone."""
 
 Take = Callable[["TipPose", JointPositions | None, str], None]
 """Takes what was asked, and the positions, or None and why there are none."""
@@ -30,12 +31,14 @@ class TipPose:
         tip: the link.
         frame: the link whose frame the pose is in.
         pose: the pose.
+        avoids: whether to look for a posture that touches nothing, first.
     """
 
     group: str
     tip: str
     frame: str
     pose: RigidTransform
+    avoids: bool = False
 
 
 class TipSolver:
@@ -78,9 +81,9 @@ class TipSolver:
         asked.robot_state = state_message(self._seed(wanted.group))
         asked.pose_stamped.header.frame_id = wanted.frame
         asked.pose_stamped.pose = pose_message(wanted.pose)
-        asked.timeout = TIMEOUT
-        # What the goal touches is shown instead.
-        asked.avoid_collisions = False
+        asked.timeout = AVOIDING_TIMEOUT if wanted.avoids else TIMEOUT
+        # Otherwise, what the goal touches is shown.
+        asked.avoid_collisions = wanted.avoids
         if self._service.ask(request, lambda answer: self._answer(wanted, answer)):
             self._waiting, self._asked = None, wanted
 
@@ -90,6 +93,10 @@ class TipSolver:
 
     def _answer(self, asked: TipPose, answer: GetPositionIK.Response) -> None:
         self._asked = None
+        if asked.avoids and answer.error_code.val != MoveItErrorCodes.SUCCESS:
+            self._waiting = self._waiting or replace(asked, avoids=False)
+            self.ask()
+            return
         if answer.error_code.val == MoveItErrorCodes.SUCCESS:
             state = answer.solution.joint_state
             self._take(asked, dict(zip(state.name, state.position, strict=False)), "")

@@ -8,15 +8,19 @@ from rclpy.context import Context
 from rclpy.node import Node
 
 from arm_node.names import listing
-from arm_node.parameter_values import IntegerReader, read_flag, read_text
+from arm_node.parameter_values import IntegerReader, read_flag, read_nonempty_text, read_text
 from arm_node.parameters import declare
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.printable import printable
+from arm_viewer.access import LOCAL_HOST
+from arm_viewer.calls.call import EndCall, OpenForm, PlaceCall
 from arm_viewer.planning_requests import PlanningRequest
 from arm_viewer.requests import (
     Configure,
+    ListNumbers,
     MeasureRates,
     MoveJoints,
+    PlotCurves,
     Request,
     ResetRun,
     SetEmergencyStop,
@@ -28,13 +32,16 @@ from arm_viewer.requests import (
     UseSnapshot,
     Watch,
 )
+from arm_viewer.ros.call_desk import CallDesk
 from arm_viewer.ros.camera_observer import CameraObserver, ImageObserver
 from arm_viewer.ros.clock_observer import ClockObserver
 from arm_viewer.ros.command_observer import CommandObserver
 from arm_viewer.ros.controller_observer import ControllerObserver, ManagerCaller
+from arm_viewer.ros.field_observer import FieldObserver
 from arm_viewer.ros.graph_observer import NodeObserver, TopicObserver
 from arm_viewer.ros.joint_commander import JointCommander, JointStateSource
 from arm_viewer.ros.joint_observer import HardwareObserver, JointStateObserver
+from arm_viewer.ros.log_observer import DiagnosticObserver, LogObserver
 from arm_viewer.ros.marker_observer import MarkerObserver
 from arm_viewer.ros.observer import Observer
 from arm_viewer.ros.planning_observer import PlanningObserver
@@ -42,7 +49,9 @@ from arm_viewer.ros.robot_observer import DescriptionObserver, TransformObserver
 from arm_viewer.ros.run_commander import ControlAnswers, RunCommander
 from arm_viewer.ros.run_observer import RunObserver
 from arm_viewer.ros.stop_observer import StopObserver
+from arm_viewer.ros.world_client import WorldClient
 from arm_viewer.snapshot import ListedController, Snapshot
+from arm_viewer.world_requests import WorldRequest
 
 TICK_S = 1.0 / 30.0
 UNWATCHED_TICK_S = 0.2
@@ -58,7 +67,17 @@ class Viewer(Node):
 
     def __init__(self, context: Context | None = None) -> None:
         super().__init__("arm_viewer", context=context)
-        self.port = declare(self, "port", DEFAULT_PORT, _read_port, "page's port on 127.0.0.1")
+        self.port = declare(self, "port", DEFAULT_PORT, _read_port, "page's port")
+        self.host = declare(
+            self,
+            "host",
+            LOCAL_HOST,
+            read_nonempty_text,
+            "address that the page listens on; any but 127.0.0.1 needs the token that it prints",
+        )
+        self.is_read_only = declare(
+            self, "read_only", False, read_flag, "let nobody do more than look at the page"
+        )
         self.display_config = declare(
             self, "display_config", "", read_text, "RViz configuration that the page shows first"
         )
@@ -69,7 +88,21 @@ class Viewer(Node):
             read_flag,
             "publish joint states from the sliders, for a robot that is not running",
         )
-        polled = PolledSubscriptions(self)
+        self._is_watched = True
+        self._observe(PolledSubscriptions(self), displays)
+        self._logged: set[str] = set()
+        self._latest = Snapshot()
+        self._requests: SimpleQueue[Request] = SimpleQueue()
+        self._request_waits = self.create_guard_condition(self._serve)
+        self._tick = self.create_timer(TICK_S, self._collect)
+        self.create_timer(DISCOVERY_PERIOD_S, self._discover)
+
+    def _observe(self, polled: PolledSubscriptions, displays: bool) -> None:
+        """Create the observers; `displays` says whether the sliders publish joint states."""
+
+        def is_watched() -> bool:
+            return self._is_watched
+
         self._descriptions = DescriptionObserver(self, polled)
         self._transforms = TransformObserver(self, polled)
         self._joint_states = JointStateObserver(self, polled)
@@ -77,19 +110,26 @@ class Viewer(Node):
         self._images = ImageObserver(self, polled)
         self._cameras = CameraObserver(self, polled)
         self._markers = MarkerObserver(self, polled)
-        self._controllers = ControllerObserver(self)
+        self._controllers = ControllerObserver(self, is_watched)
         self._managers = ManagerCaller(self, self._listed)
         self._commands = CommandObserver(self, polled, self._listed)
         self._commander = JointCommander(self, self.latest)
         self._source = JointStateSource(self, self.latest) if displays else None
         self._simulation_clock = ClockObserver(self, polled)
         self._answers = ControlAnswers()
-        self._run = RunObserver(self)
+        self._run = RunObserver(self, is_watched)
         self._run_commander = RunCommander(self, self._answers, self._run.ask_again)
         self._stops = StopObserver(self, polled, self._answers)
-        self._topics = TopicObserver(self, polled)
+        self._world = WorldClient(self, is_watched)
+        self._topics = TopicObserver(self, polled, lambda: self._simulation_clock.time)
+        self._log = LogObserver(self, polled)
+        self._diagnoses = DiagnosticObserver(self, polled)
+        self._fields = FieldObserver(self, polled)
+        self._calls = CallDesk(self)
         self._nodes = NodeObserver(self)
-        self._planning = PlanningObserver(self, polled, self.latest)
+        self._planning = PlanningObserver(
+            self, polled, self.latest, lambda: self._simulation_clock.time
+        )
         self._observers: tuple[Observer, ...] = (
             self._descriptions,
             self._transforms,
@@ -106,16 +146,15 @@ class Viewer(Node):
             self._run,
             self._run_commander,
             self._stops,
+            self._world,
             self._topics,
+            self._log,
+            self._diagnoses,
+            self._fields,
+            self._calls,
             self._nodes,
             self._planning,
         )
-        self._logged: set[str] = set()
-        self._latest = Snapshot()
-        self._requests: SimpleQueue[Request] = SimpleQueue()
-        self._request_waits = self.create_guard_condition(self._serve)
-        self._tick = self.create_timer(TICK_S, self._collect)
-        self.create_timer(DISCOVERY_PERIOD_S, self._discover)
 
     def latest(self) -> Snapshot:
         """Return the latest snapshot; from any thread."""
@@ -172,9 +211,16 @@ class Viewer(Node):
             commands=self._commands.commands,
             time=self._simulation_clock.time,
             run=self._run.status,
+            world=self._world.view,
             stops=self._stops.stops,
             control_answer=self._answers.last,
             topics=self._topics.topics,
+            log=self._log.entries,
+            diagnoses=self._diagnoses.diagnoses,
+            numbers=self._fields.numbers,
+            curves=self._fields.curves,
+            callees=self._calls.callees,
+            calls=self._calls.states,
             nodes=self._nodes.nodes,
             planning=self._planning.views,
         )
@@ -191,11 +237,13 @@ class Viewer(Node):
                     if self._source is not None:
                         self._source.move(request)
                 case Watch():
-                    self._tick.timer_period_ns = int(
-                        1e9 * (TICK_S if request.wanted else UNWATCHED_TICK_S)
-                    )
+                    self._watch(request.wanted)
                 case ShowPictures():
                     self._images.serve(request)
+                case PlotCurves() | ListNumbers():
+                    self._fields.serve(request)
+                case OpenForm() | PlaceCall() | EndCall():
+                    self._calls.serve(request)
                 case SwitchControllers() | Configure():
                     self._managers.serve(request)
                 case MeasureRates():
@@ -204,8 +252,17 @@ class Viewer(Node):
                     self._stops.serve(request)
                 case SetPlaying() | StepRun() | SetSpeed() | ResetRun() | UseSnapshot():
                     self._run_commander.serve(request)
+                case _ if isinstance(request, WorldRequest):
+                    self._world.serve(request)
                 case _ if isinstance(request, PlanningRequest):
                     self._planning.serve(request)
+
+    def _watch(self, wanted: bool) -> None:
+        self._is_watched = wanted
+        self._tick.timer_period_ns = int(1e9 * (TICK_S if wanted else UNWATCHED_TICK_S))
+        if wanted:
+            # What is asked for only while somebody watches is asked for at once.
+            self._discover()
 
     def _listed(self) -> tuple[ListedController, ...]:
         return self._controllers.controllers

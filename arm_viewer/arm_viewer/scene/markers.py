@@ -1,7 +1,7 @@
 """The world's shapes in the 3D view."""
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,9 +35,19 @@ _SOLIDS = {
 class Markers:
     """Draws the markers at their poses; use it in viser's event loop."""
 
-    def __init__(self, scene: SceneApi, frames: Frames, poses: Poses) -> None:
-        """Draw into this scene, in these frames, and move the markers by `poses`."""
+    def __init__(
+        self,
+        scene: SceneApi,
+        frames: Frames,
+        poses: Poses,
+        on_click: Callable[[str], None],
+    ) -> None:
+        """Draw into this scene, in these frames, and move the markers by `poses`.
+
+        `on_click` takes the namespace of a marker that was clicked, in viser's threads.
+        """
         self._scene = scene
+        self._on_click = on_click
         self._poses = poses
         self._frames = frames
         self._seen: Mapping[str, Marker] = {}
@@ -98,7 +108,7 @@ class Markers:
         red, green, blue, alpha = look.rgba
         for i, part in enumerate(_parts(name, look)):
             mesh = smooth(part.scaled(look.scale))
-            self._scene.add_mesh_simple(
+            drawn = self._scene.add_mesh_simple(
                 f"{path}/part_{i}",
                 mesh.vertices,
                 mesh.faces,
@@ -108,6 +118,7 @@ class Markers:
                 # The shadow map is too coarse for small objects and would draw stripes on them.
                 receive_shadow=False,
             )
+            drawn.on_click(lambda _: self._on_click(name.split("/")[-2]))
 
 
 def _matrix(pose: RigidTransform) -> tuple[Matrix, Matrix]:

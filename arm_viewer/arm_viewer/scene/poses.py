@@ -40,7 +40,7 @@ class Poses:
         self._untold: dict[str, SceneNodeHandle] = {}
         self._askers: list[Browser] = []
         self._moved_s = 0.0
-        channel.on(ASKED, self._take_asker)
+        channel.on(ASKED, self._take_asker, changes=False)
 
     def move(self, node: SceneNodeHandle, pose: RigidTransform) -> None:
         """Move a node with the next `send`; a node that is new is there at once."""

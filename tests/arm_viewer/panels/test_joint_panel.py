@@ -69,9 +69,19 @@ def test_it_follows_any_motion_of_the_joint():
 
 
 def test_a_joint_that_trembles_moves_nothing():
-    follower = HeldSlider(0.001)
-    follower.shown(0.5, 0.0)
-    assert follower.shown(0.5004, 0.1) == 0.5
+    assert JointRange("j", -2.57, 2.57).followed(0.5, 0.5007) == 0.5
+
+
+def test_a_joint_that_comes_to_rest_is_shown_where_it_is():
+    joint = JointRange("j", -2.57, 2.57)
+    follower = HeldSlider(joint.step)
+    shown = -2.0
+    # The last of the motion is smaller than a step.
+    for time_s, position in enumerate((-2.0, -2.5692, -2.57)):
+        followed = follower.shown(position, float(time_s))
+        assert followed is not None
+        shown = joint.followed(shown, followed)
+    assert shown == -2.57
 
 
 def test_nan_is_not_shown():

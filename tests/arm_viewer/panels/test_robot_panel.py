@@ -39,7 +39,7 @@ def test_a_link_s_name_may_begin_with_a_slash():
 def test_a_robot_without_joint_states_is_where_its_hardware_has_it():
     poses = MagicMock()
     frames, gui = Frames(MagicMock(), poses), MagicMock()
-    panel = RobotPanel(MagicMock(), frames, poses, MagicMock())
+    panel = RobotPanel(MagicMock(), frames, poses, MagicMock(), MagicMock())
     panel.build(gui)
     problem = gui.add_html.return_value
     described = {"/robot_description": Description("/robot_description", "", parse_urdf(ROBOT))}

@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 from types import MappingProxyType
 
-from arm_viewer.panels.status_panel import GONE, WAITING, status_message
+from arm_viewer.panels.status_panel import GONE, NO_ROBOT, WAITING, status_message
 from arm_viewer.snapshot import Description, JointStates, RunStatus, Snapshot, Topic
 
 DESCRIPTIONS = MappingProxyType({"/robot_description": Description("/robot_description", "", None)})
@@ -22,6 +22,12 @@ def snapshot(received_s, publishers):
 
 def test_without_a_robot_it_waits():
     assert status_message(Snapshot()) == WAITING
+
+
+def test_a_recording_waits_for_nothing():
+    assert status_message(Snapshot(replay="bag")) == NO_ROBOT
+    recorded = snapshot(received_s=0.0, publishers=1)
+    assert status_message(replace(recorded, made_s=60.0, replay="bag")) == ""
 
 
 def test_all_is_well_while_joint_states_come():

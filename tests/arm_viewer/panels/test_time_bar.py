@@ -55,6 +55,14 @@ def test_without_a_simulation_everything_says_why():
     assert all(reasons.values())
 
 
+def test_a_recording_is_no_simulation_that_could_be_played_or_paused():
+    replayed = Snapshot(made_s=0.0, replay="bag", stops={"": False}, time=snapshot().time)
+    fields = bar_fields(replayed, NOW_S)
+    assert (fields["state"], fields["stale"], fields["reasons"]["stop"]) == ("recording", False, "")
+    assert fields["reasons"]["play"] == "This is a recording: go back to live first"
+    assert clock_fields(replayed, NOW_S + 60.0)["silent_s"] is None
+
+
 def test_a_driver_without_a_simulation_can_be_stopped():
     driver = Snapshot(made_s=NOW_S, stops={"/left": True, "/right": False})
     fields = bar_fields(driver, NOW_S)

@@ -22,7 +22,7 @@ class Wire:
     names: list = field(default_factory=list)
     browsers: int = 0
 
-    def on(self, kind, handler) -> None:
+    def on(self, kind, handler, *, changes) -> None:
         self.handlers[kind] = handler
 
     def send(self, kind, fields, *, keep=False) -> None:

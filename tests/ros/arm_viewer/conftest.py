@@ -11,7 +11,7 @@ TIMEOUT_S = 60.0
 class SpunViewer:
     """The node, and the ways to wait with it."""
 
-    def __init__(self) -> None:
+    def __init__(self, *parameters: str) -> None:
         import rclpy
         from rclpy.context import Context
         from rclpy.executors import SingleThreadedExecutor
@@ -21,7 +21,7 @@ class SpunViewer:
 
         self.context = Context()
         rclpy.init(
-            args=["--ros-args", "-p", "publish_joint_states:=true"],
+            args=["--ros-args", *(word for each in parameters for word in ("-p", each))],
             context=self.context,
             signal_handler_options=SignalHandlerOptions.NO,
         )
@@ -54,9 +54,23 @@ class SpunViewer:
 
 @pytest.fixture(scope="module")
 def viewer():
-    spun = SpunViewer()
+    spun = SpunViewer("publish_joint_states:=true")
     yield spun
     spun.close()
+
+
+@pytest.fixture
+def new_viewer():
+    """Return a function that creates a viewer like that of a page beside a robot."""
+    spun = []
+
+    def create() -> SpunViewer:
+        spun.append(SpunViewer())
+        return spun[-1]
+
+    yield create
+    for viewer in spun:
+        viewer.close()
 
 
 @pytest.fixture

@@ -75,6 +75,44 @@ def touch(_, answer):
     return answer
 
 
+class FakeServo:
+    """Takes poses once it is told to, as servo_node does."""
+
+    def __init__(self, client) -> None:
+        from geometry_msgs.msg import PoseStamped
+        from moveit_msgs.msg import ServoStatus
+        from moveit_msgs.srv import ServoCommandType
+        from rcl_interfaces.srv import GetParameters
+
+        self.client, self.kinds = client, []
+        self.targets = client.subscribe(PoseStamped, f"{NAME}/servo_node/pose_target_cmds")
+        self.status = client.node.create_publisher(ServoStatus, f"{NAME}/servo_node/status", 10)
+        self._services = [
+            client.node.create_service(kind, f"{NAME}/servo_node/{name}", answer)
+            for kind, name, answer in (
+                (ServoCommandType, "switch_command_type", self._switch),
+                (GetParameters, "get_parameters", self._answer_group),
+            )
+        ]
+
+    def _switch(self, request, answer):
+        self.kinds.append(request.command_type)
+        answer.success = True
+        return answer
+
+    def _answer_group(self, request, answer):
+        from rcl_interfaces.msg import ParameterType, ParameterValue
+
+        assert request.names == ["moveit_servo.move_group_name"]
+        text = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value="all")
+        answer.values = [text]
+        return answer
+
+    def end(self) -> None:
+        for service in self._services:
+            self.client.node.destroy_service(service)
+
+
 @pytest.fixture(scope="module")
 def move_group(client_for_file, viewer):
     from moveit_msgs.action import ExecuteTrajectory, MoveGroup
@@ -144,6 +182,36 @@ def test_the_goal_follows_the_tip_and_stays_where_it_cannot(move_group, ask):
     assert goal.positions == {"turn": 0.25}
     goal = ask(high, lambda view: not view.goal.problem and view.goal)
     assert goal.positions == {"turn": 0.25}
+
+
+def test_the_robot_follows_poses_of_its_tip_while_a_servo_node_runs(
+    move_group, viewer, client_for_file
+):
+    from moveit_msgs.msg import ServoStatus
+
+    from arm_node.rigid_transform import RigidTransform
+    from arm_viewer.planning_requests import JogTip
+
+    assert viewer.node.latest().planning[NAME].jog is None
+    servo = FakeServo(client_for_file)
+    jog = viewer.seen(lambda s: s.planning[NAME].jog)
+    assert (jog.group, jog.said) == ("all", "")
+    drag = JogTip(NAME, RigidTransform((0.1, 0.2, 0.3)), 1)
+    viewer.until(lambda: servo.targets.messages, lambda: viewer.node.send(drag))
+    assert servo.kinds == [2]
+    target = servo.targets.messages[-1]
+    assert (target.header.frame_id, target.pose.position.z) == ("base", 0.3)
+    assert target.header.stamp.sec > 1e9, "without a simulation the time is that of the wall"
+    status = ServoStatus(code=ServoStatus.HALT_FOR_COLLISION, message="arm with box1")
+    jog = viewer.seen(
+        lambda s: s.planning[NAME].jog.said and s.planning[NAME].jog,
+        lambda: servo.status.publish(status),
+    )
+    assert (jog.said, jog.is_stopped) == ("arm with box1", True)
+    again = JogTip(NAME, RigidTransform(), 2)
+    viewer.until(lambda: len(servo.kinds) == 2, lambda: viewer.node.send(again))
+    servo.end()
+    viewer.seen(lambda s: s.planning[NAME].jog is None)
 
 
 def test_a_failed_plan_says_why_in_full(move_group, ask):

@@ -309,7 +309,8 @@ def test_without_a_robot_the_sliders_publish_its_joint_states(client, viewer, la
     publisher = client.node.create_publisher(String, "/robot_description", latched)
     publisher.publish(String(data=URDF))
     viewer.until(lambda: list(states.messages))
-    assert viewer.node.latest().displayed == {""}
+    # Those of earlier tests may still be found.
+    viewer.seen(lambda s: s.displayed == {""})
     viewer.node.send(MoveJoints("", {"turn": 0.25}))
     viewer.until(lambda: states.messages[-1].position.tolist() == [0.25, 0.5])
     shown = viewer.seen(
@@ -344,3 +345,45 @@ def test_without_joint_states_positions_come_from_the_controller_manager(client,
 def test_the_arm_without_controllers_falls_and_is_seen_to(launch, viewer):
     launch("arm_gazebo", "arm_world.launch.py", "camera:=none", "namespace:=fallen")
     assert viewer.seen(lambda s: s.hardware_positions.get("/fallen", {}).get("j1", 0.0) > 1.2)
+
+
+def test_numbers_of_any_topic_are_found_and_their_samples_kept(client, viewer):
+    from sensor_msgs.msg import JointState
+
+    from arm_viewer.requests import ListNumbers, PlotCurves
+
+    publisher = client.node.create_publisher(JointState, "/plotted/states", 10)
+    viewer.seen(lambda s: any(topic.name == "/plotted/states" for topic in s.topics))
+    message = JointState(name=["a", "b"], position=[1.0, 2.5])
+    viewer.node.send(ListNumbers())
+    numbers = viewer.seen(
+        lambda s: s.numbers.get("/plotted/states"), lambda: publisher.publish(message)
+    )
+    assert numbers == ("position[a]", "position[b]")
+    name = "/plotted/states.position[b]"
+    viewer.node.send(PlotCurves(frozenset({name})))
+    values = viewer.seen(
+        lambda s: s.curves.since(name, 0.0).values.tolist(), lambda: publisher.publish(message)
+    )
+    assert values[0] == 2.5
+    viewer.node.send(PlotCurves(frozenset()))
+    viewer.seen(lambda s: not len(s.curves.since(name, 0.0).values))
+    viewer.until(lambda: publisher.get_subscription_count() == 0)
+
+
+def test_what_nodes_log_and_diagnose_is_kept(client, viewer):
+    from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+
+    status = DiagnosticStatus(
+        level=b"\x01", name="motor: heat", message="warm", values=[KeyValue(key="T", value="60")]
+    )
+    diagnostics = client.node.create_publisher(DiagnosticArray, "/diagnostics", 10)
+    heat = viewer.seen(
+        lambda s: s.diagnoses.get("motor: heat"),
+        lambda: diagnostics.publish(DiagnosticArray(status=[status])),
+    )
+    assert (heat.level, heat.text, heat.values) == (1, "warm", (("T", "60"),))
+    client.node.get_logger().error("too hot")
+    entry = viewer.seen(lambda s: next((e for e in s.log if e.text == "too hot"), None))
+    assert (entry.level, entry.node) == (40, client.node.get_name())
+    assert "test_viewer.py" in entry.place

@@ -6,16 +6,15 @@ says so; `.ci/run` installs it.
 
 import re
 import shutil
-import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from page_user import DESK, TIMEOUT_S, PageUser
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
-TIMEOUT_S = 120.0
-VIEWPORT = {"width": 1280, "height": 800}
 
 BROWSER = next(filter(None, map(shutil.which, NAMES)), None)
 collect_ignore_glob = [] if BROWSER else ["test_*.py"]
@@ -32,6 +31,10 @@ CAMERA_PIXELS = """() => {
   const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
   return Array.from(pixels.filter((_, index) => index % 61 === 0));
 }"""
+FEW_FRAMES = """
+  const frame = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (draw) => setTimeout(() => frame(draw), 200);
+"""
 COUNTED_DRAWING = (Path(__file__).parent / "counted_drawing.js").read_text()
 
 
@@ -39,8 +42,8 @@ def pytest_report_header() -> str:
     return f"browser tests: {BROWSER or 'left out, as there is no Chromium (apt install chromium)'}"
 
 
-class Visitor:
-    """A user of the page.
+class Visitor(PageUser):
+    """A user of the page of a simulation.
 
     Attributes:
         page: playwright's page, for everything else.
@@ -49,7 +52,7 @@ class Visitor:
     """
 
     def __init__(self, page) -> None:
-        self.page = page
+        super().__init__(page)
         self.requests: list[str] = []
         self.errors: list[str] = []
         page.on("request", lambda request: self.requests.append(request.url))
@@ -115,7 +118,7 @@ class Visitor:
 
     def step_back(self) -> None:
         """See more of the 3D view's surroundings."""
-        self.page.mouse.move(VIEWPORT["width"] / 2, VIEWPORT["height"] / 2)
+        self.page.mouse.move(DESK["width"] / 2, DESK["height"] / 2)
         self.page.mouse.wheel(0, 200)
 
     def drawn(self) -> dict[str, int]:
@@ -133,19 +136,11 @@ class Visitor:
         self.wait_until(complete, "an image of a camera")
         return np.array(read)
 
-    def wait_until(self, condition: Callable[[], object], what: str) -> None:
-        """Wait for something on the page."""
-        deadline = time.monotonic() + TIMEOUT_S
-        while not condition():
-            if time.monotonic() > deadline:
-                pytest.fail(f"not within {TIMEOUT_S} s: {what}")
-            self.page.wait_for_timeout(100)
-
 
 @pytest.fixture(scope="module")
-def simulation(launch_for_file):
-    """Return a running simulation with a camera that sees the arm."""
-    launched = launch_for_file("camera:=side")
+def simulation(request, launch_for_file):
+    """Return a running simulation with the camera of the file, "side" if it names none."""
+    launched = launch_for_file(f"camera:={getattr(request.module, 'CAMERA', 'side')}")
     launched.wait_until_ready()
     return launched
 
@@ -178,6 +173,35 @@ def browser():
         running.close()
 
 
+def _new_page(browser, script: str, viewport: Mapping[str, int]):
+    page = browser.new_page(viewport=viewport)
+    page.set_default_timeout(TIMEOUT_S * 1000)
+    page.add_init_script(f"{script}; {COUNTED_DRAWING}")
+    return page
+
+
+@pytest.fixture(scope="module")
+def page_at(browser) -> Iterator[Callable[..., Any]]:
+    """Return a function that opens the page at an address, for tests of what is beside the 3D view.
+
+    Its arguments are a script that runs before those of the page, and the size of the window. The
+    page's scripts must not fail.
+    """
+    pages, errors = [], []
+
+    def open_(url: str, script: str = "", viewport: Mapping[str, int] = DESK):
+        page = _new_page(browser, FEW_FRAMES + script, viewport)
+        pages.append(page)
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.goto(url)
+        return page
+
+    yield open_
+    for page in pages:
+        page.close()
+    assert errors == []
+
+
 @pytest.fixture(scope="module")
 def new_visitor(browser, simulation, page_url) -> Iterator[Callable[..., Visitor]]:
     """Return a function that lets one more visitor open the page of the simulation.
@@ -186,12 +210,9 @@ def new_visitor(browser, simulation, page_url) -> Iterator[Callable[..., Visitor
     """
     pages = []
 
-    def arrive(script: str = "", viewport: Mapping[str, int] = VIEWPORT) -> Visitor:
-        page = browser.new_page(viewport=viewport)
-        pages.append(page)
-        page.set_default_timeout(TIMEOUT_S * 1000)
-        page.add_init_script(f"{script}; {COUNTED_DRAWING}")
-        arrived = Visitor(page)
+    def arrive(script: str = "", viewport: Mapping[str, int] = DESK) -> Visitor:
+        pages.append(_new_page(browser, script, viewport))
+        arrived = Visitor(pages[-1])
         arrived.visit(page_url)
         return arrived
 

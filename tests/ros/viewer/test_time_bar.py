@@ -1,90 +1,48 @@
 """The bar of time and emergency stop in a real browser, beside a real launch: one for the file."""
 
 import re
-import time
 
 import pytest
+from page_user import DESK, KEEP_WHAT_IS_SAID, PHONE, PageUser
 
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 
 PLAYING, PAUSED = 1, 2
 PERIOD_S = 0.01
 TOLERANCE_S = 0.03
-"""The last /clock before a pause may arrive after the news of the pause."""
-TIMEOUT_MS = 120_000
-DESK, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
-FEW_FRAMES = """
-  const frame = window.requestAnimationFrame.bind(window);
-  window.requestAnimationFrame = (draw) => setTimeout(() => frame(draw), 1000);
+CAMERA = "none"
+KEEP_TIMES = """
+  window.times = [];
+  armChannel.on("clock", ({ time_s }) => window.times.push(time_s));
 """
-"""The bar is watched and not the 3D view, which takes a second a frame without a graphics card."""
-SAID = """
-  window.said = [];
-  addEventListener("DOMContentLoaded", () => {
-    const message = document.getElementById("arm-message");
-    new MutationObserver(() => window.said.push(message.textContent))
-      .observe(message, { childList: true, characterData: true, subtree: true });
-  });
-"""
-"""Keeps the bar's sentences, which stand there for some seconds only."""
 
 
 @pytest.fixture(scope="module")
-def simulation(launch_for_file):
-    """Return a running simulation without cameras."""
-    launched = launch_for_file("camera:=none")
-    launched.wait_until_ready()
-    return launched
-
-
-@pytest.fixture(scope="module")
-def bar(browser, simulation, page_url):
+def bar(page_at, simulation, page_url):
     """Return the bar of a page in a window of a desktop."""
-    page = browser.new_page(viewport=DESK)
-    page.set_default_timeout(TIMEOUT_MS)
-    page.add_init_script(FEW_FRAMES)
-    page.add_init_script(SAID)
-    errors = []
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(page_url)
-    yield Bar(page)
-    page.close()
-    assert errors == []
+    return Bar(page_at(page_url, KEEP_WHAT_IS_SAID))
 
 
 @pytest.fixture
 def phone(bar):
     """Return the bar in a window of a phone's size."""
-    bar.page.set_viewport_size(PHONE)
+    bar.resize(PHONE)
     yield bar
-    bar.page.set_viewport_size(DESK)
+    bar.resize(DESK)
 
 
-class Bar:
+class Bar(PageUser):
     """The bar as its user sees it."""
 
-    def __init__(self, page) -> None:
-        self.page = page
+    def __init__(self, page):
+        super().__init__(page)
+        page.evaluate(KEEP_TIMES)
 
     def button(self, name):
         return self.page.get_by_role("button", name=name, exact=True)
 
-    def click(self, name):
-        """Click as soon as the button is there; a real mouse would wait for two drawn frames."""
-        usable = self.page.locator("button:not([disabled]):not([aria-disabled=true])")
-        usable.and_(self.button(name)).dispatch_event("click")
-
     def element(self, name):
         return self.page.locator(f"#arm-{name}")
-
-    def until(self, condition, what):
-        """Wait until a function returns something; return it."""
-        deadline = time.monotonic() + TIMEOUT_MS / 1000.0
-        while not (found := condition()):
-            if time.monotonic() > deadline:
-                pytest.fail(f"not within {TIMEOUT_MS} ms: {what}")
-            self.page.wait_for_timeout(50)
-        return found
 
     def shows(self, name, pattern):
         """Wait until an element's text matches; return it."""
@@ -93,32 +51,31 @@ class Bar:
             text = self.element(name).inner_text()
             return text if re.search(pattern, text) else None
 
-        return self.until(found, f"{name} shows {pattern}")
-
-    def says(self, pattern):
-        """Wait until the bar says a sentence; return it, and forget what it said."""
-
-        def found():
-            said = self.page.evaluate("window.said")
-            return next((text for text in said if re.search(pattern, text)), None)
-
-        text = self.until(found, f"it says {pattern}")
-        self.page.evaluate("window.said.length = 0")
-        return text
+        return self.wait_until(found, f"{name} shows {pattern}")
 
     @property
     def time_s(self):
         return float(self.element("clock").inner_text().removesuffix(" s"))
 
     def shows_time(self, time_s):
-        self.until(lambda: abs(self.time_s - time_s) < TOLERANCE_S, f"{time_s} s")
+        self.wait_until(lambda: abs(self.time_s - time_s) < TOLERANCE_S, f"{time_s} s")
 
     def pause(self):
-        """Pause, whatever the state; return the time."""
+        """Pause, whatever the state; return the time once it stands.
+
+        The last /clock may arrive after the news of the pause. The page tells the same time twice
+        only when nothing newer has arrived for most of a second.
+        """
         if self.shows("state", "^(Playing|Paused)$") == "Playing":
             self.click("Pause")
         self.shows("state", "^Paused$")
+        self.page.evaluate("window.times.length = 0")
+        self.wait_until(self._stands, "the clock stands")
         return self.time_s
+
+    def _stands(self):
+        last = self.page.evaluate("window.times.slice(-2)")
+        return len(last) == 2 and last[0] == last[1]
 
 
 @pytest.fixture
@@ -156,7 +113,7 @@ def test_time_is_paused_stepped_and_goes_on(bar, state):
     assert bar.element("factor").inner_text() == ""
     assert bar.element("lag").inner_text() == ""
     bar.click("Step once")
-    bar.until(lambda: bar.time_s > before_s, "a step")
+    bar.wait_until(lambda: bar.time_s > before_s, "a step")
     for name, count in (("Step 10 times", 10), ("Step 100 times", 100)):
         before_s = bar.time_s
         bar.click(name)
@@ -184,12 +141,12 @@ def test_the_speed_is_chosen(bar, client):
 
 
 def test_a_snapshot_is_saved_listed_restored_and_removed(bar):
-    paused_s = bar.pause()
+    bar.pause()
     bar.click("Snapshots")
     bar.element("name").fill("before")
     bar.click("Save")
     saved_s = float(re.search("^Saved 'before': (.*) s in", bar.says("^Saved"))[1])
-    assert saved_s == pytest.approx(paused_s, abs=TOLERANCE_S)
+    bar.shows_time(saved_s)
     bar.page.keyboard.press("Escape")
     bar.click("Step 100 times")
     bar.shows_time(saved_s + 1.0)
@@ -199,6 +156,7 @@ def test_a_snapshot_is_saved_listed_restored_and_removed(bar):
     bar.click("Snapshots")
     bar.click("Remove before")
     bar.element("none-saved").wait_for()
+    assert bar.element("none-saved").is_visible()
     bar.page.keyboard.press("Escape")
 
 
@@ -207,11 +165,12 @@ def test_a_reset_keeps_the_clock_or_sets_it_to_zero(bar):
     bar.click("Reset")
     bar.page.get_by_role("menuitem", name="keep the clock").dispatch_event("click")
     bar.says("the clock goes on")
-    assert bar.time_s == pytest.approx(before_s, abs=TOLERANCE_S)
+    bar.shows_time(before_s)
     bar.click("Reset")
     bar.page.get_by_role("menuitem", name="clock to zero").dispatch_event("click")
     bar.shows_time(0.0)
-    assert bar.element("state").inner_text() == "Paused"
+    # Without news for two seconds, on a busy machine, it says "No answer" for a while.
+    assert bar.shows("state", "^Paused$")
 
 
 def test_the_emergency_stop_is_engaged_at_once_and_released_by_two_clicks(bar, stopped):

@@ -1,10 +1,10 @@
-"""ROS images converted to RGB."""
+"""ROS images converted to RGB, and what their pixels say."""
 
 import numpy as np
 import pytest
 
 from arm_viewer.errors import PictureError
-from arm_viewer.panels.camera_panel import MAX_PIXELS_WIDE, colours
+from arm_viewer.picture_pixels import colours, depth_range, depth_scale, value_at
 from arm_viewer.snapshot import Picture
 
 
@@ -52,8 +52,10 @@ def test_near_is_red_far_is_blue_and_unknown_black():
 
 
 def test_a_large_image_becomes_smaller():
-    shape = colours(picture(np.zeros((800, 1000, 3), dtype=np.uint8), "rgb8")).shape
-    assert shape[1] <= MAX_PIXELS_WIDE
+    large = picture(np.zeros((800, 1000, 3), dtype=np.uint8), "rgb8")
+    assert colours(large).shape == (800, 1000, 3)
+    shape = colours(large, 480).shape
+    assert shape[1] <= 480
     assert shape[0] / shape[1] == pytest.approx(0.8, abs=0.01)
 
 
@@ -77,3 +79,31 @@ def test_distances_as_far_apart_as_numbers_go_have_colours():
     shown = colours(picture(np.array([[1.0, farthest, -farthest]], dtype=np.float32), "32FC1"))
     assert shown[0, 0].any()
     assert not shown[0, 2].any()
+
+
+DEPTH = np.array([[0.5, 3.25, np.nan, np.inf, -np.inf, 0.0]], dtype=np.float32)
+
+
+def test_a_pixel_of_a_depth_image_is_a_distance_or_says_why_not():
+    told = [value_at(picture(DEPTH, "32FC1"), column, 0) for column in range(6)]
+    assert told == ["0.500 m", "3.250 m", "unknown", "too far", "too near", "unknown"]
+    millimetres = picture(np.array([[0, 1234]], dtype=np.uint16), "16UC1")
+    assert [value_at(millimetres, column, 0) for column in (0, 1)] == ["unknown", "1.234 m"]
+
+
+def test_a_pixel_of_a_colour_image_has_its_colours():
+    assert value_at(picture(PIXELS, "rgb8"), 1, 0) == "R 3 G 4 B 5"
+    assert value_at(picture(PIXELS, "bgr8"), 1, 0) == "R 5 G 4 B 3"
+    assert value_at(picture(np.array([[7]], dtype=np.uint8), "mono8"), 0, 0) == "grey 7"
+    for place in ((-1, 0), (3, 0), (0, 2)):
+        assert value_at(picture(PIXELS, "rgb8"), *place) == ""
+
+
+def test_the_scale_of_a_depth_image_goes_from_its_nearest_to_its_farthest_point():
+    assert depth_range(picture(DEPTH, "32FC1")) == (0.5, 3.25)
+    assert depth_range(picture(np.array([[250, 1000]], dtype=np.uint16), "16UC1")) == (0.25, 1.0)
+    assert depth_range(picture(DEPTH[:, 2:], "32FC1")) is None
+    assert depth_range(picture(PIXELS, "rgb8")) is None
+    near, *_, far = depth_scale()
+    shown = colours(picture(DEPTH, "32FC1"))[0]
+    assert (near, far) == tuple("rgb({} {} {})".format(*colour) for colour in shown[:2])

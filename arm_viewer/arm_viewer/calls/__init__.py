@@ -1,0 +1,1 @@
+"""Forms for calls: from the type of a message to what is typed, and back to a message."""

@@ -1,0 +1,47 @@
+"""The position in a recording: play, pause, seek, speed."""
+
+from dataclasses import dataclass
+
+SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
+MIN_SPEED, MAX_SPEED = 0.01, 100.0
+
+
+@dataclass(slots=True)
+class Playback:
+    """A moment of a recording that moves on while it plays; one thread at a time.
+
+    Attributes:
+        length_s: length of the recording.
+        time_s: the moment, from 0 to `length_s`.
+        is_playing: whether it moves on.
+        speed: recorded seconds a second.
+    """
+
+    length_s: float
+    time_s: float = 0.0
+    is_playing: bool = False
+    speed: float = 1.0
+
+    def advance(self, passed_s: float) -> None:
+        """Move on by some seconds of wall time; it stops at the end."""
+        if self.is_playing:
+            self.seek(self.time_s + passed_s * self.speed)
+            self.is_playing = self.time_s < self.length_s
+
+    def seek(self, time_s: float) -> None:
+        """Go to a moment, at most to the beginning or the end."""
+        self.time_s = min(max(time_s, 0.0), self.length_s)
+
+    def play(self) -> None:
+        """Play; at the end, from the beginning."""
+        if self.time_s >= self.length_s:
+            self.time_s = 0.0
+        self.is_playing = self.length_s > 0.0
+
+    def pause(self) -> None:
+        """Stay at this moment."""
+        self.is_playing = False
+
+    def set_speed(self, speed: float) -> None:
+        """Change the speed, within its limits."""
+        self.speed = min(max(speed, MIN_SPEED), MAX_SPEED)

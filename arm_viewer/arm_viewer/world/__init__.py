@@ -1,0 +1,1 @@
+"""The things of the world: what there is, what is added, and files that are dropped."""

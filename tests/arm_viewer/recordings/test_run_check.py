@@ -1,0 +1,126 @@
+"""Runs are told apart from bags, and verified by a process, with a script in its place."""
+
+import json
+import sys
+import threading
+import time
+
+import pytest
+from mcap.writer import Writer
+
+from arm_viewer.errors import PageRecordingError
+from arm_viewer.recordings.run_check import RunCheck, is_run
+
+TIMEOUT_S = 60.0
+LENGTHS = {"of_periods": 100, "period_s": 0.01}
+EQUAL = {"periods": 100, "difference": None, "is_cut_off": False, "end_reason": "", **LENGTHS}
+DIFFERENT = {
+    **EQUAL,
+    "periods": 20,
+    "difference": {"period": 20, "time_s": 0.21, "lines": ["position of joint j0: 1 instead of 2"]},
+}
+SCRIPT = """
+import pathlib, sys
+pathlib.Path(sys.argv[sys.argv.index("--bag") + 1]).mkdir()
+print(sys.argv[1])
+"""
+
+
+@pytest.fixture
+def run_file(tmp_path):
+    path = tmp_path / "a.run"
+    with path.open("wb") as stream:
+        writer = Writer(stream)
+        writer.start("arm-run", "arm-suite")
+        writer.finish()
+    return path
+
+
+@pytest.fixture
+def checked(run_file):
+    """Return a function that lets a script verify a run, and returns the check and its bag."""
+    checks = []
+
+    def check(script, *words):
+        over = threading.Event()
+        bags = []
+        command = (sys.executable, "-c", script, *words)
+        checks.append(RunCheck(run_file, lambda _, bag: (bags.append(bag), over.set()), command))
+        assert over.wait(TIMEOUT_S)
+        return checks[-1], bags[0]
+
+    yield check
+    for check in checks:
+        check.close()
+
+
+def lines(*told):
+    return "\n".join(map(json.dumps, told))
+
+
+def test_a_run_is_known_by_its_content(run_file, tmp_path, write_mcap):
+    assert is_run(run_file)
+    assert not is_run(write_mcap([("/a", 0, b"12345678")], name="b.run"))
+    (tmp_path / "short.run").write_bytes(b"\x89MCAP0")
+    assert not any(map(is_run, (tmp_path / "short.run", tmp_path, tmp_path / "gone")))
+
+
+def test_a_run_without_a_period_is_not_called_verified(checked):
+    check, _ = checked(SCRIPT, lines({"result": {**EQUAL, "periods": 0}}))
+    assert check.verdict.text == "holds no control period, so nothing was compared"
+    assert not check.verdict.is_equal
+
+
+def test_equal_periods_are_counted(checked):
+    check, bag = checked(SCRIPT, lines({"periods": 50, **LENGTHS}, {"result": EQUAL}))
+    assert (check.verdict.is_over, check.verdict.is_equal) == (True, True)
+    assert check.verdict.text == "verified: all 100 control periods are equal"
+    assert (bag.name, check.verdict.name) == ("a.run", "a.run")
+    check.close()
+    assert not bag.exists()
+
+
+def test_a_difference_is_told_with_its_time(checked):
+    check, bag = checked(SCRIPT, lines({"result": DIFFERENT}))
+    assert not check.verdict.is_equal
+    assert check.verdict.text.startswith("differs at 0.21 s, in control period 20: position of j")
+    assert "nothing after the difference is shown" in check.verdict.details
+    assert bag is not None
+
+
+def test_progress_is_told_until_then(run_file):
+    script = "import sys, time; print(sys.argv[1], flush=True); time.sleep(600)"
+    command = (sys.executable, "-c", script, lines({"periods": 50, **LENGTHS}))
+    check = RunCheck(run_file, lambda *_: None, command)
+    deadline_s = time.monotonic() + TIMEOUT_S
+    try:
+        while "0.5 of 1.0 s" not in check.verdict.text:
+            assert time.monotonic() < deadline_s
+            time.sleep(0.01)
+    finally:
+        check.close()
+    for thread in threading.enumerate():
+        if thread.name == "run check":
+            thread.join(TIMEOUT_S)
+    assert not check.verdict.is_over, "nobody wants to know how a check ended that was closed"
+
+
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        ("import sys; sys.exit('another version of MuJoCo')", "another version of MuJoCo"),
+        ("print('no JSON')", "no JSON"),
+        ("print('{\"result\": {}}')", "{}"),
+        ("", "ended without a word"),
+    ],
+)
+def test_what_cannot_run_again_says_why(checked, script, said):
+    check, bag = checked(script)
+    assert bag is None
+    assert check.verdict.text.startswith("cannot be run again: ")
+    assert said in check.verdict.text
+
+
+def test_a_program_that_cannot_be_started_is_named(run_file):
+    with pytest.raises(PageRecordingError, match="cannot start /no/such"):
+        RunCheck(run_file, lambda *_: None, ("/no/such",))

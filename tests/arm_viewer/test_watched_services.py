@@ -1,0 +1,57 @@
+"""Services are asked again and again only while a browser shows the answers."""
+
+import pytest
+
+from arm_viewer.ros import controller_observer, run_observer, world_client
+from arm_viewer.ros.controller_observer import ControllerObserver
+from arm_viewer.ros.run_observer import RunObserver
+from arm_viewer.ros.world_client import WorldClient
+
+LIST = "/controller_manager/list_controllers"
+
+
+class Node:
+    """A graph with a simulation and a controller manager."""
+
+    def count_services(self, name):
+        return 1
+
+    def get_service_names_and_types(self):
+        return [(LIST, [controller_observer.SERVICE_TYPE])]
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """Return the services that were asked; those that are not looked at do not answer."""
+    asked = []
+
+    class Caller:
+        def __init__(self, node, service_class, service, max_wait_s=0.0):
+            self._service = service
+
+        def ask(self, request, then):
+            asked.append(self._service)
+            return True
+
+    for module in (controller_observer, run_observer, world_client):
+        monkeypatch.setattr(module, "ServiceCaller", Caller)
+    return asked
+
+
+@pytest.mark.parametrize("observer_class", [RunObserver, WorldClient])
+def test_the_simulation_is_asked_only_while_somebody_watches(asked, observer_class):
+    watched = [False]
+    observer = observer_class(Node(), lambda: watched[0])
+    observer.discover({})
+    observer.collect(1.0)
+    assert asked == []
+    watched[0] = True
+    observer.discover({})
+    observer.collect(2.0)
+    assert asked
+
+
+def test_controllers_are_known_before_somebody_watches(asked):
+    observer = ControllerObserver(Node(), lambda: False)
+    observer.discover({})
+    assert asked == [LIST]

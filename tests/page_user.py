@@ -1,0 +1,72 @@
+"""What every user of a page in a browser does: tests of the page derive theirs from this one."""
+
+import re
+import time
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+TIMEOUT_S = 120.0
+DESK, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
+RESIZED = """(width) => new Promise((go) => {
+  const look = () => requestAnimationFrame(innerWidth === width ? () => go() : look);
+  look();
+})"""
+KEEP_WHAT_IS_SAID = """
+  window.said = [];
+  addEventListener("DOMContentLoaded", () => setTimeout(() => {
+    for (const id of ["arm-message", "arm-drop"]) {
+      const element = document.getElementById(id);
+      const keep = () => window.said.push(
+        [element.textContent, element.classList.contains("arm-failed")]);
+      new MutationObserver(keep)
+        .observe(element, { childList: true, characterData: true, subtree: true });
+    }
+  }, 0));
+"""
+"""A script before those of the page: it keeps sentences that stand there for some seconds only."""
+
+
+class PageUser:
+    """A user of playwright's `page`."""
+
+    def __init__(self, page: Any) -> None:
+        self.page = page
+
+    def click(self, name: str, role: str = "button") -> None:
+        """Click as soon as it can be; a real mouse would wait for two drawn frames."""
+        usable = self.page.locator(":not([disabled]):not([aria-disabled=true])")
+        found = self.page.get_by_role(role, name=name, exact=True)
+        usable.and_(found).dispatch_event("click")
+
+    def resize(self, size: dict[str, int]) -> None:
+        """Give the window another size, and wait until the page's scripts have heard of it."""
+        self.page.set_viewport_size(size)
+        self.page.evaluate(RESIZED, size["width"])
+
+    def says(self, pattern: str, is_problem: bool = False) -> str:
+        """Wait until the page says a sentence that it takes back; return it, and forget all.
+
+        Args:
+            pattern: found in the sentence.
+            is_problem: whether the sentence must be shown as a problem.
+        """
+
+        def found() -> str | None:
+            said = self.page.evaluate("window.said")
+            fits = (text for text, failed in said if failed or not is_problem)
+            return next((text for text in fits if re.search(pattern, text)), None)
+
+        text = self.wait_until(found, f"it says {pattern}")
+        self.page.evaluate("window.said.length = 0")
+        return text
+
+    def wait_until(self, condition: Callable[[], Any], what: str) -> Any:
+        """Wait until a function of the page returns something; return it."""
+        deadline = time.monotonic() + TIMEOUT_S
+        while not (found := condition()):
+            if time.monotonic() > deadline:
+                pytest.fail(f"not within {TIMEOUT_S} s: {what}")
+            self.page.wait_for_timeout(50)
+        return found

@@ -1,0 +1,152 @@
+"""The tab of the world in a real browser, beside a real launch: one for the file.
+
+A thing is added, chosen, pushed, moved and deleted; files are dropped; another world is loaded.
+"""
+
+import base64
+import re
+
+import pytest
+from page_user import DESK, KEEP_WHAT_IS_SAID, PHONE, PageUser
+
+pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+
+CAMERA = "none"
+SIZES = {"desk": DESK, "phone": PHONE}
+CONTACT = re.compile("Playing|Clock only|No answer|No simulation")
+DROP = """([name, data]) => {
+  const files = new DataTransfer();
+  files.items.add(new File([Uint8Array.from(atob(data), (c) => c.charCodeAt(0))], name));
+  for (const kind of ["dragover", "drop"]) {
+    const event = new DragEvent(kind, { dataTransfer: files, bubbles: true, cancelable: true });
+    document.body.dispatchEvent(event);
+  }
+}"""
+POST = b"""<robot name="post"><link name="post">
+  <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  <collision><geometry><box size="0.02 0.02 0.2"/></geometry></collision></link></robot>"""
+
+
+@pytest.fixture(scope="module")
+def page(page_at, simulation, page_url):
+    """Return the page of a browser, at first on a phone, where its sheet is open."""
+    opened = page_at(page_url, KEEP_WHAT_IS_SAID, PHONE)
+    # What is dropped before there is contact is lost.
+    opened.locator("#arm-state", has_text=CONTACT).wait_for(state="attached")
+    return opened
+
+
+@pytest.fixture(params=SIZES)
+def world(page, request, client_for_file):
+    """Return the tab in a window of each size."""
+    tab = World(page, client_for_file)
+    tab.resize(SIZES[request.param])
+    page.get_by_role("tab", name="World", exact=True).click()
+    return tab
+
+
+class World(PageUser):
+    """The tab as its user sees it."""
+
+    def __init__(self, page, client) -> None:
+        super().__init__(page)
+        self.client = client
+
+    def press(self, label):
+        self.page.get_by_role("button", name=label, exact=True).dispatch_event("click")
+
+    def enter(self, label, text):
+        fields = self.page.locator(f"xpath=//label[.='{label}']/following::input[1]")
+        field = fields.locator("visible=true")
+        field.fill(text)
+        field.press("Enter")
+
+    def unfold(self, folder, label):
+        head = self.page.get_by_text(folder, exact=True).first
+        # What it holds comes with it: before, an open one would look like one that is folded.
+        head.wait_for(state="attached")
+        if not self.page.get_by_role("button", name=label, exact=True).is_visible():
+            head.dispatch_event("click")
+            self.page.get_by_role("button", name=label, exact=True).wait_for()
+
+    def thing(self, name):
+        return self.page.locator(f"[data-thing={name}]")
+
+    def choose(self, name):
+        if self.thing(name).get_attribute("aria-pressed") == "false":
+            self.thing(name).dispatch_event("click")
+        self.page.locator(f"[data-thing={name}][aria-pressed=true]").wait_for()
+        self.page.get_by_role("button", name="Delete", exact=True).wait_for()
+
+    def shows(self, text):
+        self.page.get_by_text(text).first.wait_for()
+
+    def drop(self, name, data):
+        self.page.evaluate(DROP, [name, base64.b64encode(data).decode()])
+
+    def position(self, name):
+        from simulation_interfaces.srv import GetEntityState
+
+        request = GetEntityState.Request(entity=name)
+        state = self.client.call(GetEntityState, "/get_entity_state", request).state
+        return state.pose.position
+
+
+def test_a_box_is_added_pushed_moved_and_deleted(world):
+    world.unfold("Add", "Add")
+    world.enter("Position", "0.3 0.1 0.03")
+    world.press("Add")
+    world.thing("box").wait_for()
+    world.choose("box")
+    before = world.position("box")
+    assert (before.x, before.y) == pytest.approx((0.3, 0.1), abs=0.02)
+    world.enter("Push to", "0 0.6 0")
+    world.press("Push")
+    world.shows("Pushed box")
+    world.wait_until(lambda: world.position("box").y > before.y + 0.001, "the box moves")
+    world.enter("Move to", "0.5 -0.4 0.025")
+    world.press("Move")
+    world.shows("box: x y z 0.500 -0.400 0.02")
+    assert world.position("box").y == pytest.approx(-0.4, abs=0.01)
+    world.press("Delete")
+    world.thing("box").wait_for(state="detached")
+    world.shows("Deleted box")
+
+
+def test_a_wrong_field_is_a_sentence(world):
+    world.unfold("Add", "Add")
+    world.enter("Size", "0.1")
+    world.press("Add")
+    world.shows("The size is not 'x y z' in numbers: '0.1'")
+    world.enter("Size", "0.05 0.05 0.05")
+    assert world.thing("box").count() == 0
+
+
+def test_a_file_is_dropped_and_its_check_shown(world):
+    world.drop("post.urdf", POST)
+    world.thing("post").wait_for()
+    world.shows("usable:")
+    world.choose("post")
+    world.press("Delete")
+    world.thing("post").wait_for(state="detached")
+    assert world.page.locator("#arm-drop").is_hidden()
+
+
+def test_a_broken_file_and_one_of_another_kind_are_refused(world):
+    world.drop("broken.urdf", b"<robot name='x'><link name='a'></robot>")
+    world.shows("broken.urdf cannot be simulated")
+    world.drop("photo.png", b"x")
+    assert world.says("photo.png is not a URDF, SDF or STL file", is_problem=True)
+
+
+def test_another_world_is_loaded(world):
+    from simulation_interfaces.srv import GetCurrentWorld
+
+    world.unfold("Other world", "Load")
+    wanted = "shapes" if world.page.viewport_size == SIZES["desk"] else "empty"
+    world.page.get_by_role("combobox", name="Available").click()
+    world.page.get_by_role("option", name=wanted, exact=True).click()
+    world.press("Load")
+    world.shows(f"Loaded {wanted}")
+    answer = world.client.call(GetCurrentWorld, "/get_current_world", GetCurrentWorld.Request())
+    assert answer.world.name == wanted
