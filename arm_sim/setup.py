@@ -7,6 +7,7 @@ from setuptools import find_packages, setup
 PACKAGE = "arm_sim"
 NEIGHBOURS = [
     "../arm_control",
+    "../arm_controller",
     "../arm_description",
     "../arm_gazebo",
     "../arm_node",

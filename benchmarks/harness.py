@@ -22,6 +22,8 @@ from pathlib import Path
 import numpy as np
 import psutil
 
+from arm_node.workarounds.local_profile import OF_FAST_DDS_2, OF_FAST_DDS_3
+
 os.environ.setdefault("AMENT_PREFIX_PATH", sys.prefix)
 
 CONTROLLERS = """\
@@ -37,6 +39,8 @@ position_controller:
     joints: [j0, j1, j2, j3]
 """
 
+SETTLED_S = 2.0
+"""How long after it is ready a process has taken the memory that it takes."""
 CLIENT = Path(__file__).with_name("default_client.py")
 
 
@@ -80,7 +84,7 @@ def percentiles(values: list[float] | np.ndarray, *points: float) -> list[float]
 
 def client_environment() -> dict[str, str]:
     """A stranger's environment: everything default, but the domain of this run."""
-    dropped = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE")
+    dropped = ("ROS_AUTOMATIC_DISCOVERY_RANGE", OF_FAST_DDS_2, OF_FAST_DDS_3)
     environment = {k: v for k, v in os.environ.items() if k not in dropped}
     environment["AMENT_PREFIX_PATH"] = sys.prefix
     return environment
@@ -123,7 +127,8 @@ class Suite:
 
     def wait_until_ready(self) -> None:
         """Block until the launcher says that everything runs."""
-        if not self.ready.wait(60.0) or self.process.poll() is not None:
+        self.ready.wait(60.0)
+        if not any(line.startswith("ready ") for line in self.lines):
             raise SystemExit("the suite did not start:\n" + "\n".join(self.lines))
 
     def find(self, module: str) -> psutil.Process:
@@ -134,6 +139,12 @@ class Suite:
                     return process
         raise SystemExit(f"no process {module} below the launcher")
 
+    def memory_mb(self) -> float:
+        """Return the proportional memory of the launcher and all that it started, in MB."""
+        top = psutil.Process(self.process.pid)
+        family = [top, *top.children(recursive=True)]
+        return sum(each.memory_full_info().pss for each in family) / 2**20
+
     def stop(self) -> None:
         """End it as Ctrl-C would."""
         if self.process.poll() is None:
@@ -142,17 +153,25 @@ class Suite:
 
 
 @contextlib.contextmanager
-def suite(*arguments: str, rate_hz: int = 100, parameters: str = CONTROLLERS) -> Iterator[Suite]:
-    """Run `arm launch` with this control rate, ready, in a domain of its own."""
-    with fresh_domain(), tempfile.TemporaryDirectory() as folder:
-        controllers = Path(folder) / "controllers.yaml"
-        controllers.write_text(parameters.format(rate_hz=rate_hz))
-        running = Suite(f"controllers:={controllers}", *arguments)
+def started(*arguments: str) -> Iterator[Suite]:
+    """Run `arm launch` in a domain of its own until it is ready, and end it afterwards."""
+    with fresh_domain():
+        running = Suite(*arguments)
         try:
             running.wait_until_ready()
             yield running
         finally:
             running.stop()
+
+
+@contextlib.contextmanager
+def suite(*arguments: str, rate_hz: int = 100, parameters: str = CONTROLLERS) -> Iterator[Suite]:
+    """Run `arm launch` with this control rate, ready, in a domain of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        controllers = Path(folder) / "controllers.yaml"
+        controllers.write_text(parameters.format(rate_hz=rate_hz))
+        with started(f"controllers:={controllers}", *arguments) as running:
+            yield running
 
 
 class Client:

@@ -8,17 +8,13 @@ executor thread asks for free motions to and fro, and in turn for an answer that
 """
 
 import argparse
-import subprocess
-import sys
 import threading
 import time
 
 import harness
 import numpy as np
-import psutil
 
-LAUNCH = ("launch", "mycobot", "planning:=true")
-SETTLED_S = 2.0
+LAUNCH = ("mycobot", "planning:=true")
 TARGETS = {
     "plan_kinematic_path": "8, 25 ms",
     "move_action, plan only": "20 ms",
@@ -26,35 +22,6 @@ TARGETS = {
     "rclpy's get_parameters": "",
 }
 JOINTS = ("link1_to_link2", "link2_to_link3", "link3_to_link4")
-
-
-def launched(*words: str) -> tuple[subprocess.Popen[str], float]:
-    """Start a launch; return it and the seconds until it said that it is ready."""
-    start = time.monotonic()
-    process = subprocess.Popen(
-        [sys.executable, "-m", "arm_cli", *words],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-    assert process.stdout is not None
-    for line in process.stdout:
-        if line.startswith("ready "):
-            threading.Thread(target=process.stdout.read, daemon=True).start()
-            return process, time.monotonic() - start
-    raise SystemExit(f"arm {' '.join(words)} was never ready")
-
-
-def memory_mb(process: subprocess.Popen[str]) -> float:
-    """Return the proportional memory of a launch and all that it started, in MB."""
-    top = psutil.Process(process.pid)
-    family = [top, *top.children(recursive=True)]
-    return sum(each.memory_full_info().pss for each in family) / 2**20
-
-
-def end(process: subprocess.Popen[str]) -> None:
-    process.terminate()
-    process.wait(30)
 
 
 def wait(future):
@@ -134,19 +101,16 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=3, help="starts of each kind")
     parser.add_argument("--count", type=int, default=200, help="requests of each kind")
     options = parser.parse_args()
-    starts: dict[tuple[str, ...], list[tuple[float, float]]] = {LAUNCH[:2]: [], LAUNCH: []}
+    starts: dict[tuple[str, ...], list[tuple[float, float]]] = {LAUNCH[:1]: [], LAUNCH: []}
     for _ in range(options.runs):
         for words, found in starts.items():
-            process, ready_s = launched(*words)
-            time.sleep(SETTLED_S)
-            found.append((ready_s, memory_mb(process)))
-            end(process)
+            with harness.started(*words) as running:
+                ready_s = time.monotonic() - running.started_s
+                time.sleep(harness.SETTLED_S)
+                found.append((ready_s, running.memory_mb()))
     (alone_s, alone_mb), (both_s, both_mb) = (np.median(each, axis=0) for each in starts.values())
-    process, _ = launched(*LAUNCH)
-    try:
+    with harness.started(*LAUNCH):
         times = answers(options.count)
-    finally:
-        end(process)
     rows = [
         harness.Row(
             "ready, without planning and with it", f"{alone_s:.2f}, {both_s:.2f} s", "1.5 s"

@@ -108,14 +108,14 @@ def ompl_setup(
     return setup
 
 
-def peer(given: Cell, model: CollisionModel) -> Plan:
+def peer(given: Cell, model: CollisionModel, limit_s: float = LIMIT_S) -> Plan:
     count = len(given.arm.model.group(GROUP).joints)
 
     def plan(start: np.ndarray, goal: np.ndarray, seed: int) -> np.ndarray | None:
         ompl.util.RNG.setSeed(seed + 1)
         setup = ompl_setup(given, model, start, goal)
         setup.setPlanner(ompl.geometric.RRTConnect(setup.getSpaceInformation()))
-        end_s = time.process_time() + LIMIT_S
+        end_s = time.process_time() + limit_s
         setup.solve(ompl.base.PlannerTerminationCondition(lambda: time.process_time() > end_s))
         if not setup.haveExactSolutionPath():
             return None

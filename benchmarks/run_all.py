@@ -32,6 +32,7 @@ SCRIPTS = (
     "gym_speed.py",
     "workarounds.py",
     "bag_recording.py",
+    "recording_jumps.py",
     "run_recording.py",
     "repeatability.py",
     "soak.py",
@@ -41,7 +42,9 @@ SCRIPTS = (
     "planning_quality.py",
     "move_group.py",
     "planning_beside_control.py",
+    "seeing.py",
     "jog.py",
+    "real_arm.py",
     "fuzzing.py",
     "page.py",
 )

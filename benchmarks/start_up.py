@@ -1,7 +1,8 @@
-"""Time from `arm launch` to the first joint state and the first image; a late client's wait."""
+"""Time from `arm launch` to the first joint state and image; a late client's wait; memory."""
 
 import argparse
 import statistics
+import time
 
 import harness
 
@@ -33,6 +34,13 @@ def late_clients(runs: int) -> list[float]:
     return waits
 
 
+def memory_mb(*arguments: str) -> float:
+    """Return the memory of a launch and all that it started, in MB."""
+    with harness.started(*arguments) as running:
+        time.sleep(harness.SETTLED_S)
+        return running.memory_mb()
+
+
 def spread(values: list[float]) -> str:
     """Return median and maximum as text."""
     return f"median {statistics.median(values):.2f} s, max {max(values):.2f} s (n={len(values)})"
@@ -58,6 +66,11 @@ def main() -> None:
                 "late default client: node to first /joint_states",
                 spread(late_clients(runs)),
                 "median 0.6 s, max 1.2 s",
+            ),
+            harness.Row(
+                "memory (Pss) of all that `arm launch` starts, with its camera and without",
+                f"{memory_mb():.0f} MB, {memory_mb('camera:=none'):.0f} MB",
+                "184 MB without",
             ),
         ],
     )

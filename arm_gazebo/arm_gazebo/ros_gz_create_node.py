@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 POSE = {"x": "x", "y": "y", "z": "z", "R": "roll", "P": "pitch", "Y": "yaw"}
 WAIT_S = 0.1
 RESULT_OK = 1
-EXIT_USAGE = 2
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -1,6 +1,7 @@
 """Plans motions of the simulated robot around what is in its world."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -88,6 +89,23 @@ class MotionPlanning:
         return JointTrajectory(
             motion.times_s, motion.positions, motion.joints, motion.velocities, motion.accelerations
         )
+
+    def collision_check(
+        self, joints: Sequence[str], ignored: Collection[str]
+    ) -> Callable[[np.ndarray], bool]:
+        """Return a check of the present world; see `Simulation.collision_check`."""
+        scene = self._scene(self._root())
+        objects = {name: one for name, one in scene.objects.items() if name not in ignored}
+        checker = self._planner.checker(replace(scene, objects=objects))
+        present = np.array([scene.positions[joint] for joint in checker.model.joints])
+        places = [checker.model.joints.index(joint) for joint in joints]
+
+        def is_free(positions: np.ndarray) -> bool:
+            state = present.copy()
+            state[places] = positions
+            return checker.is_free(state)
+
+        return is_free
 
     def _root(self) -> RigidTransform:
         """Return the pose of the root link in the world.

@@ -2,7 +2,7 @@
 
 import logging
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 from contextlib import AbstractContextManager, ExitStack
 from functools import cached_property
 from os import fspath
@@ -205,6 +205,20 @@ class Simulation:
         return self._planning.plan(
             goal, group, link=link, speed=speed, allowed_time_s=allowed_time_s, seed=seed
         )
+
+    def collision_check(
+        self, joints: Sequence[str], ignored: Collection[str] = ()
+    ) -> Callable[[np.ndarray], bool]:
+        """Return a function that tells whether the robot touches nothing with joints at positions.
+
+        It knows the present world, and takes positions of the joints in their order, shape (n,); it
+        is for the time until the next plan.
+
+        Args:
+            joints: names of the joints; others stay where they are now.
+            ignored: entities that may be touched.
+        """
+        return self._planning.collision_check(joints, ignored)
 
     @cached_property
     def _planning(self) -> "MotionPlanning":

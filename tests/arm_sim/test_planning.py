@@ -107,3 +107,16 @@ def test_a_trajectory_alone_needs_joints_that_a_controller_drives(sim):
         sim.follow({**points, "joints": ["elbow"]})
     with pytest.raises(CallError, match=r"follow\('arm_controller'\) lacks the trajectory"):
         sim.follow("arm_controller")
+
+
+def test_a_check_says_where_the_robot_touches_nothing(sim):
+    sim.follow(sim.plan("home"))
+    joints = ["link2_to_link3", "gripper_controller"]
+    x, y, z = sim.pose("gripper_base")[:3, 3]
+    sim.spawn(BLOCK, name="block", pose=(x, y, z))
+    try:
+        is_free, ignores = sim.collision_check(joints), sim.collision_check(joints, ["block"])
+        assert [is_free(np.array([0.0, 0.0])), ignores(np.array([0.0, 0.0]))] == [False, True]
+        assert is_free(np.array([-0.8, 0.0]))
+    finally:
+        sim.delete("block")

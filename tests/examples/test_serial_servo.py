@@ -13,6 +13,7 @@ from arm_control import HardwareReturn
 from arm_control.hardware.driver import SystemInterface
 
 Info = Callable[..., Any]
+TIMEOUT_S = 60.0
 
 
 @pytest.fixture
@@ -92,6 +93,9 @@ def test_a_servo_that_goes_away_is_an_error_and_can_come_back(
             assert servo.read(0.0, 0.01) is HardwareReturn.OK
         assert servo.read(0.0, 0.01) is HardwareReturn.ERROR
         assert servo.on_cleanup()
+        # It may not answer on the next terminal, which gets the same number.
+        answering.join(TIMEOUT_S)
+        assert not answering.is_alive()
     assert str(link) in caplog.text
 
 

@@ -16,7 +16,12 @@ from arm_description.package_search import share_folders, suite_package
 from arm_gazebo.errors import CameraError
 from arm_gazebo.feed.child_process import NOT_INHERITED, Spawn, WorkerProcess, describe_exit
 from arm_gazebo.sensors.camera import CameraSensor
-from arm_node.workarounds.local_profile import use_general_profile
+from arm_node.workarounds.local_profile import (
+    OF_FAST_DDS_2,
+    OF_FAST_DDS_3,
+    profile_variable,
+    use_general_profile,
+)
 
 EXIT_BACKEND = 3
 """Exit code of a camera process whose render backend does not work; another one should be tried."""
@@ -65,7 +70,7 @@ def _sensor(values: Mapping[str, Any]) -> CameraSensor:
     return CameraSensor(**fixed)
 
 
-PROFILE_VARIABLES = ("FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE")
+PROFILE_VARIABLES = (OF_FAST_DDS_2, OF_FAST_DDS_3)
 PACKAGE = "arm_gazebo"
 LARGE_PROFILE = "config/dds_images.xml"
 SMALL_PROFILE = "config/dds_images_small.xml"
@@ -87,7 +92,7 @@ def camera_environment(environ: Mapping[str, str], shm: str = "/dev/shm") -> dic
     use_general_profile(own)
     profile = _profile(own, shm)
     if profile is not None:
-        own[PROFILE_VARIABLES[0]] = str(profile)
+        own[profile_variable()] = str(profile)
     return own
 
 

@@ -265,6 +265,19 @@ class Physics:
         self._saved_qpos[:] = data.qpos
         self.probe.expire()
 
+    def set_mass(self, body: str, mass_kg: float) -> None:
+        """Give a body another mass, evenly denser or lighter; recordings of runs do not have it.
+
+        Args:
+            body: name of the body.
+            mass_kg: more than 0.
+        """
+        found = self.model.body(body)
+        found.inertia[:] *= mass_kg / found.mass[0]
+        found.mass[0] = mass_kg
+        # What the solver derives from masses.
+        mujoco.mj_setConst(self.model, mujoco.MjData(self.model))
+
     def state(self) -> WorldState:
         """Return a copy of the present state."""
         data = self.data
@@ -279,6 +292,10 @@ class Physics:
     def observe(self) -> mujoco.MjData:
         """Return the present state with all derived quantities; see `StateProbe.observe`."""
         return self.probe.observe(self.model, self.data)
+
+    def poses(self) -> mujoco.MjData:
+        """Return the present poses of bodies and shapes alone; see `StateProbe.poses`."""
+        return self.probe.poses(self.model, self.data)
 
     def take_failures(self) -> list[str]:
         """Return one sentence for each physics failure since the last call."""

@@ -69,13 +69,14 @@ class Replay:
         GazeboError, ArmControlError, DescriptionError: the run cannot be built with what is here.
 
     Attributes:
+        file: the recording.
         simulation: the physics.
         robots: its robots with their controller managers.
         periods: control periods that have run.
     """
 
     def __init__(self, file: RunFile) -> None:
-        self._file = file
+        self.file = file
         self._run = run = run_of(file).build()
         self.simulation, self.robots = run.physics, run.robots
         self.periods = 0
@@ -124,7 +125,7 @@ class Replay:
     ) -> Iterator[tuple[StateBlock | Difference, int]]:
         """Return each recorded period, its inputs having been given; or what went otherwise."""
         waiting: deque[RecordedInput] = deque()
-        for record in self._file.records():
+        for record in self.file.records():
             match record:
                 case RecordedInput():
                     waiting.append(record)
@@ -182,7 +183,7 @@ class Replay:
         if not is_run_input(method):
             # A file from a stranger must not call anything else.
             raise RecordingError(
-                f"{self._file.path}: there is no input '{recorded.method}' of "
+                f"{self.file.path}: there is no input '{recorded.method}' of "
                 f"{recorded.controller or 'the simulation'}"
             )
         method(**arguments)
@@ -190,7 +191,7 @@ class Replay:
     def _robot(self, recorded: RecordedInput) -> SimulatedRobot:
         index = recorded.robot
         if index is None or not 0 <= index < len(self.robots):
-            raise RecordingError(f"{self._file.path} has no robot number {index}")
+            raise RecordingError(f"{self.file.path} has no robot number {index}")
         return self.robots[index]
 
     def _swap(self, model: SavedModel, roots: tuple[str, ...]) -> None:

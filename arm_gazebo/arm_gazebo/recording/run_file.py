@@ -189,6 +189,14 @@ class RunFile:
                 if topic != HEADER:
                     yield self._record(topic, data)
 
+    def count_periods(self) -> int:
+        """Return the number of recorded control periods; it reads the whole file.
+
+        Raises:
+            RecordingError: the file is damaged before its end.
+        """
+        return sum(len(item.hashes) for item in self.records() if isinstance(item, StateBlock))
+
     def _open(self) -> BinaryIO:
         try:
             if not self.path.is_file():

@@ -1,21 +1,14 @@
-"""The node that serves simulation_interfaces, with the figures and markers that it publishes."""
+"""The node that serves simulation_interfaces, with the figures that it publishes."""
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from diagnostic_msgs.srv import SelfTest
-from geometry_msgs.msg import Point, Vector3
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
-from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
-from std_msgs.msg import ColorRGBA
-from visualization_msgs.msg import Marker, MarkerArray
 
 from arm_control.loop.control_loop import ControlLoop
 from arm_gazebo.camera.feed import CameraFeed
@@ -25,107 +18,13 @@ from arm_gazebo.physics_timing import PhysicsTiming
 from arm_gazebo.ros.entity_services import EntityServices
 from arm_gazebo.ros.run_services import RunServices, SnapshotServices, StepServices
 from arm_gazebo.ros.topic import set_stamp
+from arm_gazebo.ros.world_markers import WorldMarkerPublisher
 from arm_gazebo.run.run import SimulationRun
 from arm_gazebo.state.run_reset import RunReset
 from arm_gazebo.state.snapshots import SnapshotStore
-from arm_gazebo.world.editor import LoopCall, WorldEditor
-from arm_gazebo.world.entity import WORLD_FRAME
+from arm_gazebo.world.editor import LoopCall
 from arm_gazebo.world.run_control import RunControl
-from arm_gazebo.world.shapes import Solid, WorldShape, WorldShapes
 from arm_node.executor_thread import ExecutorThread
-from arm_node.workarounds.message_template import MessageTemplate
-
-TOPIC = "world_markers"
-QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-MARKER_PERIOD_S = 0.1
-MOVED = 1e-4
-"""Smallest change of a coordinate, in m or of a quaternion, that counts as motion."""
-TYPES = {
-    Solid.BOX: Marker.CUBE,
-    Solid.BALL: Marker.SPHERE,
-    Solid.CYLINDER: Marker.CYLINDER,
-    Solid.TRIANGLES: Marker.TRIANGLE_LIST,
-}
-MAX_REMOVED = 1000
-"""Limit on the deleted shapes that every message repeats, because a message may be lost."""
-
-
-class WorldMarkerPublisher:
-    """Publishes all shapes when something has moved, at most ten times a second.
-
-    Every message contains all shapes, so that a late subscriber needs only the last one. It is
-    serialised once for each model; then only the poses in its bytes change. It runs on the thread
-    of the node's executor, which is the editor's thread, and only while there are subscribers.
-    """
-
-    def __init__(self, node: Node, editor: WorldEditor) -> None:
-        self._editor = editor
-        self._timer = node.create_timer(
-            MARKER_PERIOD_S, self._check, clock=Clock(clock_type=ClockType.STEADY_TIME)
-        )
-        self._timer.cancel()
-        self._publisher = node.create_publisher(
-            MarkerArray, TOPIC, QOS, event_callbacks=PublisherEventCallbacks(matched=self._match)
-        )
-        self._has_new_subscriber = False
-        self._model: object = None
-        self._shown: dict[tuple[str, int], None] = {}
-        self._removed: dict[tuple[str, int], None] = {}
-
-    def _match(self, matched: QoSPublisherMatchedInfo) -> None:
-        if not matched.current_count:
-            self._timer.cancel()
-        elif matched.current_count_change > 0:
-            self._has_new_subscriber = True
-            self._timer.reset()
-
-    def _check(self) -> None:
-        if self._model is not self._editor.model:
-            self._take_model()
-        poses = self._shapes.poses(*self._editor.motions().geom_poses)
-        if self._has_new_subscriber or not np.abs(poses - self._poses).max(initial=0.0) < MOVED:
-            self._poses = poses
-            self._template.float64[self._places] = poses.ravel()
-            self._template.publish(self._publisher)
-            self._has_new_subscriber = False
-
-    def _take_model(self) -> None:
-        self._model = self._editor.model
-        self._shapes = WorldShapes(self._editor.model, self._editor.entities)
-        shown = dict.fromkeys(shape.key for shape in self._shapes.shapes)
-        before = {**self._removed, **self._shown}
-        self._removed = dict.fromkeys([key for key in before if key not in shown][-MAX_REMOVED:])
-        self._shown = shown
-        markers = [_marker(shape) for shape in self._shapes.shapes]
-        deletions = [_deletion(owner, number) for owner, number in self._removed]
-        self._template = MessageTemplate(MarkerArray(markers=[*markers, *deletions]))
-        places = self._template.indices("markers[*].pose")
-        self._places = places[: 7 * len(markers)]
-        # NaN makes every shape count as moved in the next comparison.
-        self._poses = np.full((len(markers), 7), math.nan)
-
-
-def _marker(shape: WorldShape) -> Marker:
-    r, g, b, a = shape.rgba
-    x, y, z = shape.size
-    marker = _empty(shape.owner, shape.number, Marker.ADD)
-    marker.type = TYPES[shape.solid]
-    marker.scale = Vector3(x=x, y=y, z=z)
-    marker.color = ColorRGBA(r=r, g=g, b=b, a=a)
-    marker.points = [Point(x=px, y=py, z=pz) for px, py, pz in shape.corners.tolist()]
-    return marker
-
-
-def _deletion(owner: str, number: int) -> Marker:
-    return _empty(owner, number, Marker.DELETE)
-
-
-def _empty(owner: str, number: int, action: int) -> Marker:
-    # A zero stamp means the latest transform to the world's frame.
-    marker = Marker(ns=owner, id=number, action=action)
-    marker.header.frame_id = WORLD_FRAME
-    return marker
-
 
 REPORT_PERIOD_S = 1.0
 DEPTH = 10

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -26,10 +27,7 @@ def check_dataset(folder: Path) -> list[str]:
     try:
         info = json.loads((folder / layout.INFO).read_text(encoding="utf-8"))
         episodes = pq.read_table(folder / layout.EPISODES_PATH).to_pylist()
-        rows = [
-            pq.read_table(folder / info["data_path"].format(**_place(episode, "data")))
-            for episode in episodes
-        ]
+        rows = _rows_of(folder, info, episodes)
         statistics = json.loads((folder / layout.STATS).read_text(encoding="utf-8"))
         tasks = pq.read_table(folder / layout.TASKS)
     except (OSError, ValueError, KeyError, pa.ArrowException) as error:
@@ -40,6 +38,22 @@ def check_dataset(folder: Path) -> list[str]:
         *_faults_of_statistics(info, statistics),
         *_faults_of_videos(folder, info, episodes),
     ]
+
+
+def _rows_of(
+    folder: Path, info: Mapping[str, Any], episodes: list[dict[str, Any]]
+) -> list[pa.Table]:
+    """Return the rows of each episode, read from files that hold several."""
+    files = [folder / info["data_path"].format(**_place(episode, "data")) for episode in episodes]
+    found: list[pa.Table] = []
+    left, before = pa.table({}), None
+    for number, (file, episode) in enumerate(zip(files, episodes, strict=True)):
+        if file != before:
+            left, before = pq.read_table(file), file
+        is_last = number + 1 == len(files) or files[number + 1] != file
+        found.append(left if is_last else left.slice(0, episode["length"]))
+        left = left.slice(episode["length"])
+    return found
 
 
 def _place(episode: Mapping[str, Any], kind: str) -> dict[str, int]:
@@ -126,6 +140,7 @@ def _faults_of_videos(
     folder: Path, info: Mapping[str, Any], episodes: list[dict[str, Any]]
 ) -> Iterator[str]:
     keys = [name for name, one in info["features"].items() if one["dtype"] == "video"]
+    times_of = cache(frame_times_s)
     for key in keys:
         for number, episode in enumerate(episodes):
             place = _place(episode, f"videos/{key}")
@@ -135,6 +150,7 @@ def _faults_of_videos(
                 continue
             begin, end = (episode[f"videos/{key}/{side}_timestamp"] for side in ("from", "to"))
             wanted = begin + np.arange(episode["length"]) / info["fps"]
-            times = np.array([t for t in frame_times_s(path) if begin - TOLERANCE_S < t < end])
+            times = np.array(times_of(path))
+            times = times[(times > begin - TOLERANCE_S) & (times < end - TOLERANCE_S)]
             if len(times) != len(wanted) or np.abs(times - wanted).max() >= TOLERANCE_S:
                 yield f"episode {number}: not every row has a frame in {key}"

@@ -3,18 +3,18 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from arm_sim.dataset.shared_files import DATA_FILE_MB, FILES_IN_CHUNK, VIDEO_FILE_MB
 from arm_sim.dataset.streams import CameraStream, Stream, stamp_feature
 from arm_sim.dataset.video import video_info
 
 VERSION = "v3.0"
-FILES_IN_CHUNK = 1000
 DATA_PATH = "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 VIDEO_PATH = "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4"
 EPISODES_PATH = "meta/episodes/chunk-000/file-000.parquet"
 INFO, STATS, TASKS = "meta/info.json", "meta/stats.json", "meta/tasks.parquet"
 PROVENANCE = "meta/arm_suite.json"
 """The origin of the rows; LeRobot does not read it."""
-STREAMS_PATH = "streams/{name}/episode-{episode:06d}.parquet"
+STREAMS_PATH = "streams/{name}/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 """All numbers at their own stamps; LeRobot does not read them."""
 INDEX_FEATURES = {
     "timestamp": "float32",
@@ -24,11 +24,6 @@ INDEX_FEATURES = {
     "task_index": "int64",
 }
 """The features that every dataset has besides its own, each one number per row."""
-
-
-def file_of(episode: int) -> dict[str, int]:
-    """Return chunk and file of an episode, which has files of its own."""
-    return {"chunk_index": episode // FILES_IN_CHUNK, "file_index": episode % FILES_IN_CHUNK}
 
 
 def features_of(streams: Sequence[Stream], fps: int) -> dict[str, Any]:
@@ -71,8 +66,8 @@ def info_of(
         "total_frames": frames,
         "total_tasks": tasks,
         "chunks_size": FILES_IN_CHUNK,
-        "data_files_size_in_mb": 100,
-        "video_files_size_in_mb": 200,
+        "data_files_size_in_mb": DATA_FILE_MB,
+        "video_files_size_in_mb": VIDEO_FILE_MB,
         "fps": fps,
         "splits": {"train": f"0:{episodes}"},
         "data_path": DATA_PATH,

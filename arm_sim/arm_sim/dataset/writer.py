@@ -6,6 +6,7 @@ LeRobot normalises the inputs of policies with the statistics of features that s
 import json
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Self, TypeAlias
@@ -17,8 +18,8 @@ from numpy.typing import NDArray
 
 from arm_sim.dataset import layout
 from arm_sim.dataset.alignment import Alignment
+from arm_sim.dataset.shared_files import FilePlace, PathOf, TableFiles, VideoFiles
 from arm_sim.dataset.streams import CameraStream, Samples, Stream, stamp_feature
-from arm_sim.dataset.video import write_video
 from arm_sim.errors import CallError
 
 Array = NDArray[np.float64]
@@ -53,9 +54,28 @@ def image_statistics(images: Sequence[NDArray[np.uint8]]) -> dict[str, Array]:
     """Return the statistics of images (h, w, 3) by channel, scaled to 0..1, shape (3, 1, 1)."""
     size = max(images[0].shape[:2])
     stride = max(1, size // WANTED_PX) if size >= LARGE_PX else 1
-    pixels = np.concatenate([image[::stride, ::stride].reshape(-1, 3) for image in images]) / 255.0
-    found = {name: values.reshape(-1, 1, 1) for name, values in statistics_of(pixels).items()}
+    channels = np.concatenate([image[::stride, ::stride].reshape(-1, 3) for image in images]).T
+    each = [_statistics_of_bytes(np.bincount(channel, minlength=256)) for channel in channels]
+    found = {name: np.array([one[name] for one in each]).reshape(-1, 1, 1) for name in each[0]}
     found["count"] = np.array([len(images)])
+    return found
+
+
+def _statistics_of_bytes(counts: NDArray[np.int64]) -> dict[str, float]:
+    """Return the statistics of values k / 255 from how often each k occurs, shape (256,)."""
+    values, total, until = np.arange(256) / 255.0, int(counts.sum()), np.cumsum(counts)
+    mean = float(counts @ values) / total
+    found = {
+        "min": float(values[counts > 0][0]),
+        "max": float(values[counts > 0][-1]),
+        "mean": mean,
+        "std": float(np.sqrt(counts @ (values - mean) ** 2 / total)),
+    }
+    for name, share in QUANTILES.items():
+        # Between the two values nearest to the place, as numpy's quantile.
+        place = share * (total - 1)
+        low, high = np.searchsorted(until, [int(place), int(np.ceil(place))], side="right")
+        found[name] = float(values[low] + (place - int(place)) * (values[high] - values[low]))
     return found
 
 
@@ -109,12 +129,16 @@ class DatasetWriter:
         self._statistics: list[dict[str, Statistics]] = []
         self._provenance: list[dict[str, Any]] = []
         self._frames = 0
+        self._tables: dict[str, TableFiles] = {}
+        self._videos: dict[str, VideoFiles] = {}
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
         if kind is not None:
+            with suppress(OSError, ValueError):
+                self._close_files()
             shutil.rmtree(self._work, ignore_errors=True)
 
     def add_episode(
@@ -138,26 +162,23 @@ class DatasetWriter:
         self._check(layout.features_of(streams, alignment.fps), alignment.fps)
         if task not in self._tasks:
             self._tasks.append(task)
-        episode = len(self._episodes)
         columns = self._columns(streams, alignment, self._tasks.index(task))
-        self._write(
-            layout.DATA_PATH.format(**layout.file_of(episode)), _table(columns, self._features)
-        )
+        data = self._files_of("data", layout.DATA_PATH).add(_table(columns, self._features))
         statistics: dict[str, Statistics] = {
             name: statistics_of(_rows(values)) for name, values in columns.items()
         }
-        videos: dict[str, Any] = {}
+        places: dict[str, Any] = data.columns("data")
         for stream, rows in zip(streams, alignment.rows, strict=True):
             if isinstance(stream, CameraStream):
-                statistics[stream.name] = self._write_video(stream, rows, episode)
-                videos |= _video_columns(stream.name, episode, alignment)
+                place, statistics[stream.name] = self._write_video(stream, rows)
+                places |= _video_columns(stream.name, place, alignment)
             else:
-                self._write_stream(stream, episode)
+                self._write_stream(stream)
         self._statistics.append(statistics)
-        self._note(alignment, task, videos, source or {})
+        self._note(alignment, task, places, source or {})
 
     def _note(
-        self, alignment: Alignment, task: str, videos: dict[str, Any], source: Mapping[str, Any]
+        self, alignment: Alignment, task: str, places: dict[str, Any], source: Mapping[str, Any]
     ) -> None:
         """Record the description of an episode whose files were written."""
         episode, length = len(self._episodes), alignment.length
@@ -166,12 +187,11 @@ class DatasetWriter:
                 "episode_index": episode,
                 "tasks": [task],
                 "length": length,
-                **{f"data/{key}": value for key, value in layout.file_of(episode).items()},
                 "dataset_from_index": self._frames,
                 "dataset_to_index": self._frames + length,
                 "meta/episodes/chunk_index": 0,
                 "meta/episodes/file_index": 0,
-                **videos,
+                **places,
             }
         )
         self._frames += length
@@ -192,6 +212,7 @@ class DatasetWriter:
         """
         if not self._episodes:
             raise CallError("a dataset needs an episode")
+        self._close_files()
         info = layout.info_of(
             self._features,
             self._fps,
@@ -252,9 +273,9 @@ class DatasetWriter:
         }
 
     def _write_video(
-        self, camera: CameraStream, rows: NDArray[np.int64], episode: int
-    ) -> Statistics:
-        """Write the images of an episode; return their statistics."""
+        self, camera: CameraStream, rows: NDArray[np.int64]
+    ) -> tuple[FilePlace, Statistics]:
+        """Write the images of an episode; return where they are, and their statistics."""
         sampled = set(images_to_sample(len(rows)).tolist())
         kept: list[NDArray[np.uint8]] = []
 
@@ -268,19 +289,40 @@ class DatasetWriter:
                     kept.append(image.copy())
                 yield image
 
-        path = self._path(
-            layout.VIDEO_PATH.format(video_key=camera.name, **layout.file_of(episode))
-        )
-        write_video(path, frames(), camera.height, camera.width, self._fps)
-        return image_statistics(kept)
+        if camera.name not in self._videos:
+            path_of = self._path_of(layout.VIDEO_PATH, video_key=camera.name)
+            self._videos[camera.name] = VideoFiles(path_of, camera.height, camera.width, self._fps)
+        place = self._videos[camera.name].add(frames(), len(rows))
+        return place, image_statistics(kept)
 
-    def _write_stream(self, stream: Samples, episode: int) -> None:
+    def _write_stream(self, stream: Samples) -> None:
         """Write all numbers of a stream at their own stamps."""
         values = pa.FixedSizeListArray.from_arrays(
             pa.array(stream.values.astype(np.float32).reshape(-1)), len(stream.names)
         )
-        table = pa.table({"stamp_ns": pa.array(stream.stamps_ns), stream.name: values})
-        self._write(layout.STREAMS_PATH.format(name=stream.name, episode=episode), table)
+        episodes = pa.array(np.full(len(stream.stamps_ns), len(self._episodes)))
+        table = pa.table(
+            {
+                "episode_index": episodes,
+                "stamp_ns": pa.array(stream.stamps_ns),
+                stream.name: values,
+            }
+        )
+        self._files_of(stream.name, layout.STREAMS_PATH).add(table)
+
+    def _files_of(self, name: str, path: str) -> TableFiles:
+        if name not in self._tables:
+            self._tables[name] = TableFiles(self._path_of(path, name=name))
+        return self._tables[name]
+
+    def _path_of(self, path: str, **names: str) -> PathOf:
+        return lambda chunk, file: (
+            self._work / path.format(chunk_index=chunk, file_index=file, **names)
+        )
+
+    def _close_files(self) -> None:
+        for files in (*self._tables.values(), *self._videos.values()):
+            files.close()
 
     def _episodes_table(self) -> pa.Table:
         rows = [
@@ -324,12 +366,11 @@ def _rows(values: Column) -> Column:
     return values.reshape(len(values), -1)
 
 
-def _video_columns(name: str, episode: int, alignment: Alignment) -> dict[str, Any]:
-    place = layout.file_of(episode)
+def _video_columns(name: str, place: FilePlace, alignment: Alignment) -> dict[str, Any]:
     return {
-        **{f"videos/{name}/{key}": value for key, value in place.items()},
-        f"videos/{name}/from_timestamp": 0.0,
-        f"videos/{name}/to_timestamp": alignment.length / alignment.fps,
+        **place.columns(f"videos/{name}"),
+        f"videos/{name}/from_timestamp": place.from_s,
+        f"videos/{name}/to_timestamp": place.from_s + alignment.length / alignment.fps,
     }
 
 

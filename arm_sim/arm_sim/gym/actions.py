@@ -97,9 +97,20 @@ class Commands:
             actions: from -1 to 1, shape (..., joints); others are clipped.
             last: the last commands, same shape.
         """
-        share = np.clip(np.asarray(actions, dtype=np.float64), -1.0, 1.0)
+        # Not np.clip, which takes twice as long.
+        share = np.minimum(np.maximum(np.asarray(actions, dtype=np.float64), -1.0), 1.0)
         base = last if self._mode.adds else self._middle
-        return np.clip(base + share * self._half, self._lower, self._upper)
+        return np.minimum(np.maximum(base + share * self._half, self._lower), self._upper)
+
+    def action_to(self, wanted: Array, last: Array) -> NDArray[np.float32]:
+        """Return the action that commands positions, or comes as near to them as one can.
+
+        Args:
+            wanted: the positions, shape (joints,).
+            last: the last commands, same shape.
+        """
+        base = last if self._mode.adds else self._middle
+        return np.clip((wanted - base) / self._half, -1.0, 1.0).astype(np.float32)
 
 
 def action_mode(name: str) -> ActionMode:

@@ -1,6 +1,6 @@
 """A Gymnasium environment for any robot; a policy takes the place of its controllers."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import gymnasium
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from arm_sim.errors import CallError
 from arm_sim.gym.actions import Commands, action_mode
+from arm_sim.gym.expert import Expert
 from arm_sim.gym.robot import CommandedRobot, RobotOptions
 from arm_sim.gym.task import Array, Task
 from arm_sim.robots import AnyPath
@@ -39,6 +40,9 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         restart: whether each episode starts from the robot's initial pose. With False the robot
             stays where it is and gets a new goal, unless `reset` gets a seed.
         simulation: further arguments of `Simulation`, such as `world` or `arguments`.
+        vary: changes the scene at the start of each episode, before the task draws its goal.
+        expert: makes the expert of each episode, whose action infos contain as `expert_action`;
+            None for none. For actions of positions only.
         render_mode: "rgb_array" for images of a camera, or None.
         render_camera: the camera of `render`; None for the robot's first.
 
@@ -47,6 +51,7 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         lower: lowest positions of the commanded joints, shape (n,).
         upper: highest positions of the commanded joints, shape (n,).
         goal: the values that the task drew for this episode.
+        decision_s: simulated time of one action.
     """
 
     # Gymnasium reads it from the class, to check render modes before it creates an environment.
@@ -64,6 +69,8 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         control_rate_hz: int = CONTROL_RATE_HZ,
         restart: bool = True,
         simulation: Mapping[str, Any] | None = None,
+        vary: "Callable[[ArmEnv, np.random.Generator], None] | None" = None,
+        expert: "Callable[[ArmEnv], Expert] | None" = None,
         render_mode: str | None = None,
         render_camera: str | None = None,
     ) -> None:
@@ -76,16 +83,21 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         """
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise CallError(f"no render mode '{render_mode}'; the only one is rgb_array")
+        interface = action_mode(actions).interface
+        if expert is not None and interface != "position":
+            raise CallError(f"an expert commands positions, so it has no actions '{actions}'")
         self.render_mode = render_mode
-        self.task = task or Task()
+        self.task, self.decision_s = task or Task(), decision_s
         options = RobotOptions(description, joints, decision_s, control_rate_hz, simulation or {})
-        self._robot = CommandedRobot(options, action_mode(actions).interface)
+        self._robot = CommandedRobot(options, interface)
         self.simulation: Simulation = self._robot.simulation
         self.lower, self.upper = self._robot.lower, self._robot.upper
         self._commands = Commands(actions, self._robot.joints, decision_s)
         self._cameras = tuple(cameras)
         self._render_camera = render_camera
         self._restarts, self._started = restart, False
+        self._vary, self._make_expert = vary, expert
+        self._expert: Expert | None = None
         self.goal: Mapping[str, Array] = {}
         self.metadata = {**self.metadata, "render_fps": round(1.0 / decision_s)}
         self._begin(np.random.default_rng(0))
@@ -117,7 +129,7 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
 
     def point(self, link: str) -> Array:
         """Return the origin of a link, or of a thing in the world, in m, shape (3,)."""
-        state = self.simulation.parts.physics.observe()
+        state = self.simulation.parts.physics.poses()
         return state.xpos[self._robot.body(link)].copy()
 
     def point_at(self, link: str, positions: Array) -> Array:
@@ -129,14 +141,19 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observations, dict[str, Any]]:
-        """Start an episode; return the observations, and an empty info."""
+        """Start an episode; return the observations, and the info.
+
+        Raises:
+            PlanError, PlanningError: the expert has no plan for this episode.
+        """
         super().reset(seed=seed)
         if self._restarts or seed is not None or not self._started:
             self._begin(self.np_random)
         else:
             self.goal = self.task.start(self, self.np_random)
         self._started = True
-        return self._observe(), {}
+        self._expert = self._make_expert(self) if self._make_expert is not None else None
+        return self._observe(), self._shown()
 
     def step(
         self, action: NDArray[np.float32]
@@ -151,11 +168,24 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         for _ in range(self._robot.periods):
             parts.tick()
         failures = parts.physics.take_failures()
-        info: dict[str, Any] = {"is_success": bool(self.task.succeeded(self))}
+        info = {"is_success": bool(self.task.succeeded(self)), **self._shown()}
         if failures:
             info["failure"] = failures[0]
         reward, terminated = float(self.task.reward(self)), bool(self.task.terminated(self))
         return self._observe(), reward, terminated, bool(failures), info
+
+    def move(self, positions: Array, time_s: float) -> None:
+        """Command the joints evenly to positions, outside of any action; for the start of episodes.
+
+        Args:
+            positions: shape (n,).
+            time_s: simulated time until they are commanded.
+        """
+        parts, start = self.simulation.parts, self._last
+        for share in np.linspace(0.0, 1.0, round(time_s / self.simulation.period_s) + 1)[1:]:
+            self._last = start + share * (positions - start)
+            self._robot.command(self._last.tolist())
+            parts.tick()
 
     def render(self) -> Images | None:
         """Return an image of the camera, shape (h, w, 3), or None without a render mode."""
@@ -178,7 +208,16 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         self._addresses = np.array([joint.qpos_address for joint in self._robot.joints])
         self._dofs = np.array([joint.dof_address for joint in self._robot.joints])
         self._last = self._commands.home.copy()
+        if self._vary is not None:
+            self._vary(self, random)
         self.goal = self.task.start(self, random)
+
+    def _shown(self) -> dict[str, Any]:
+        """Return the expert's action, if there is an expert."""
+        if self._expert is None:
+            return {}
+        wanted = self._expert.command(self._last.copy())
+        return {"expert_action": self._commands.action_to(wanted, self._last)}
 
     def _observe(self) -> Observations:
         observed: Observations = dict(self.task.observe(self))

@@ -6,6 +6,7 @@ import numpy as np
 
 from arm_sim.gym.arm_env import ArmEnv
 from arm_sim.gym.batch_env import BatchEnv
+from arm_sim.gym.pick_expert import pick_expert
 from arm_sim.gym.task import (
     JOINT_POSITIONS,
     JOINT_VELOCITIES,
@@ -72,10 +73,13 @@ class ArmPick(ArmEnv):
 
     Args:
         actions: see `ArmEnv`.
+        expert: whether infos contain the action of a planned pick as `expert_action`.
         options: further arguments of `ArmEnv`.
     """
 
-    def __init__(self, actions: str = "step", **options: Any) -> None:
+    def __init__(self, actions: str = "step", expert: bool = False, **options: Any) -> None:
+        if expert:
+            options["expert"] = lambda env: pick_expert(env, OBJECT)
         super().__init__("mycobot", pick_task(), actions=actions, **options)
 
 

@@ -4,9 +4,13 @@ from typing import Any
 
 import numpy as np
 
+from arm_description.urdf.parser import parse_urdf
+from arm_planning.kinematics.inverse import InverseKinematics
+from arm_planning.kinematics.search import Orientation
 from arm_sim.errors import CallError
 from arm_sim.gym.arm_env import ArmEnv
 from arm_sim.gym.batch_env import BatchEnv
+from arm_sim.gym.expert import WayExpert
 from arm_sim.gym.task import (
     JOINT_POSITIONS,
     JOINT_VELOCITIES,
@@ -87,6 +91,20 @@ def reachable_point(scene: Scene, random: np.random.Generator, tip: str) -> Arra
     )
 
 
+def reach_expert(env: ArmEnv, tip: str) -> WayExpert:
+    """Return an expert that turns all joints straight to positions where the link is at the goal.
+
+    Raises:
+        PlanningError: there are no such positions.
+    """
+    robot = parse_urdf(env.simulation.parts.robot.document)
+    kinematics = InverseKinematics.for_link(robot, tip, env.joints)
+    # The goal as the robot's root sees it.
+    target = kinematics.pose(env.position) @ np.linalg.inv(env.simulation.pose(tip))
+    target[:3, 3] += target[:3, :3] @ env.goal["point"]
+    return WayExpert([kinematics.solve(target, env.position, orientation=Orientation.ANY)])
+
+
 class ArmReach(ArmEnv):
     """Move the gripper of the 4-DOF arm, or a link of any robot, to a random point.
 
@@ -95,6 +113,7 @@ class ArmReach(ArmEnv):
         tip: the link.
         tolerance_m: distance at which the goal is reached.
         actions: see `ArmEnv`.
+        expert: whether infos contain the action of inverse kinematics as `expert_action`.
         options: further arguments of `ArmEnv`.
     """
 
@@ -104,9 +123,13 @@ class ArmReach(ArmEnv):
         tip: str = TIP,
         tolerance_m: float = TOLERANCE_M,
         actions: str = "step",
+        expert: bool = False,
         **options: Any,
     ) -> None:
-        super().__init__(description, reach_task(tip, tolerance_m), actions=actions, **options)
+        task = reach_task(tip, tolerance_m)
+        if expert:
+            options["expert"] = lambda env: reach_expert(env, tip)
+        super().__init__(description, task, actions=actions, **options)
 
 
 def reach_batch(

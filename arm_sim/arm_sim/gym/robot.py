@@ -91,6 +91,8 @@ class CommandedRobot:
         self.lower = np.array([joint.lower for joint in self.joints])
         self.upper = np.array([joint.upper for joint in self.joints])
         self._motions: EntityMotions | None = None
+        self._bodies: dict[str, int] = {}
+        self._bodies_of = physics.model
 
     def restart(self) -> None:
         """Return robot and world to their start, with the clock at 0 and without a command."""
@@ -110,11 +112,15 @@ class CommandedRobot:
             UnknownNameError: there is no such body.
         """
         model = self.simulation.parts.physics.model
-        try:
-            return int(model.body(name).id)
-        except KeyError:
-            names = [model.body(index).name for index in range(1, model.nbody)]
-            raise UnknownNameError(f"no link '{name}'; there are {', '.join(names)}") from None
+        if model is not self._bodies_of:
+            self._bodies, self._bodies_of = {}, model
+        if name not in self._bodies:
+            try:
+                self._bodies[name] = int(model.body(name).id)
+            except KeyError:
+                names = [model.body(index).name for index in range(1, model.nbody)]
+                raise UnknownNameError(f"no link '{name}'; there are {', '.join(names)}") from None
+        return self._bodies[name]
 
     def point_at(self, link: str, positions: Array) -> Array:
         """Return where a link would be with the joints at positions, shape (3,)."""

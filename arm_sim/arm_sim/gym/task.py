@@ -125,6 +125,7 @@ class Task:
     def observe(self, scene: Scene) -> dict[str, NDArray[np.float32]]:
         """Return the observations of a scene, as new arrays."""
         return {
-            name: np.clip(one.of(scene), one.low, one.high).astype(np.float32)
+            # Not np.clip, which takes twice as long.
+            name: np.minimum(np.maximum(one.of(scene), one.low), one.high).astype(np.float32)
             for name, one in self.observations.items()
         }

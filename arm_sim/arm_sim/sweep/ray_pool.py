@@ -62,7 +62,7 @@ class RayPool:
     def __init__(self, address: str, study: Study, folder: Path, most: int | None = None) -> None:
         file, _, function = study.task.rpartition(":")
         self._most = most or math.inf
-        self._address = _join(address, Path(file).parent, folder.resolve())
+        self._address = join(address, _sent(Path(file).parent, folder.resolve()))
         self._actors: Any = ray.remote(_Maker).options(num_cpus=1)
         self._arguments = (Path(file).name, function, study.seed)
         self._news = _News(folder.absolute(), HeadWatch(self._address))
@@ -120,38 +120,66 @@ class RayPool:
 
     def close(self) -> None:
         """Leave the cluster, which ends all workers."""
-        if self._news.head.answers(looks_now=True):
-            if self._sizing.is_alive():
-                self._sizing.join()
-            ray.shutdown()
-        else:
-            atexit.register(_exit_at_once)
+        if self._sizing.is_alive() and self._news.head.answers(looks_now=True):
+            self._sizing.join()
+        leave(self._news.head)
 
 
-def _join(address: str, sent: Path, output: Path) -> str:
+def join(address: str, environment: Mapping[str, Any]) -> str:
     """Make this process a driver of a cluster; return the address of its head.
 
     Args:
         address: see `RayPool`.
-        sent: the folder that goes to the machines, without `output` if that lies in it.
-        output: the folder of the results.
+        environment: Ray's `runtime_env` of its processes.
 
     Raises:
         StudyError: see `RayPool`.
     """
     if address != AUTO:
         check_address(address)
-    excluded = [f"/{output.relative_to(sent)}"] if sent in output.parents else []
     try:
         ray.init(
             address=address,
-            runtime_env={"working_dir": str(sent), "excludes": excluded},
+            runtime_env=dict(environment),
             log_to_driver=False,
             logging_level=logging.ERROR,
         )
         return ray.get_runtime_context().gcs_address
     except (RayError, RuntimeError, OSError, ValueError) as error:
-        raise StudyError(f"cannot join the Ray cluster at {address}: {_sentence(error)}") from error
+        raise StudyError(f"cannot join the Ray cluster at {address}: {sentence(error)}") from error
+
+
+def leave(head: HeadWatch) -> None:
+    """Leave the cluster, which ends what this process has started there."""
+    if head.answers(looks_now=True):
+        ray.shutdown()
+    else:
+        atexit.register(_exit_at_once)
+
+
+def check_versions(machine: str, made: Mapping[str, str]) -> None:
+    """Check that a machine has the versions of this one, as `made_with` gives them.
+
+    Raises:
+        StudyError: it has others.
+    """
+    here = made_with()
+    differences = [
+        f"{name} {made.get(name)} (here {here[name]})"
+        for name in SAME_VERSIONS
+        if made.get(name) != here[name]
+    ]
+    if differences:
+        raise StudyError(
+            f"{machine} of the Ray cluster has other versions: {', '.join(differences)}; "
+            "install the same on all its machines"
+        )
+
+
+def _sent(folder: Path, output: Path) -> Mapping[str, Any]:
+    """Return the environment to which a folder is sent, without that of the results in it."""
+    excluded = [f"/{output.relative_to(folder)}"] if folder in output.parents else []
+    return {"working_dir": str(folder), "excludes": excluded}
 
 
 @dataclass
@@ -197,13 +225,12 @@ class _RayWorker:
         except RayError as error:
             # A failure of `_Maker` itself, which catches those of the user's task.
             if isinstance(error, RayTaskError) or getattr(error, "actor_init_failed", False):
-                reason = str(error).strip().splitlines()[-1].strip()
                 raise StudyError(
-                    f"a process of the Ray cluster cannot make runs: {reason}; install the same "
-                    "arm-suite on all its machines"
+                    f"a process of the Ray cluster cannot make runs: {last_line(error)}; install "
+                    "the same arm-suite on all its machines"
                 ) from error
             if self not in self._news.started:
-                self._news.loss = _sentence(error)
+                self._news.loss = sentence(error)
             # It may be unreachable and alive; no result of it counts any more.
             self.kill()
             reason = f"its process on {self._machine} was lost ({type(error).__name__})"
@@ -233,17 +260,7 @@ class _RayWorker:
         self._answer.add_done_callback(lambda _: self._news.sent.put(self))
 
     def _start(self, machine: str, made: Mapping[str, str], error: StudyError | None) -> None:
-        here = made_with()
-        differences = [
-            f"{name} {made.get(name)} (here {here[name]})"
-            for name in SAME_VERSIONS
-            if made.get(name) != here[name]
-        ]
-        if differences:
-            raise StudyError(
-                f"{machine} of the Ray cluster has other versions: {', '.join(differences)}; "
-                "install the same on all its machines"
-            )
+        check_versions(machine, made)
         if error is not None:
             raise error
         self._machine = machine
@@ -288,6 +305,11 @@ def _exit_at_once() -> None:
     os._exit(1)
 
 
-def _sentence(error: Exception) -> str:
+def sentence(error: Exception) -> str:
     """Return the message of one of Ray's errors on one line."""
     return " ".join(str(error).split())
+
+
+def last_line(error: Exception) -> str:
+    """Return what ends the traceback in one of Ray's errors."""
+    return str(error).strip().splitlines()[-1].strip()

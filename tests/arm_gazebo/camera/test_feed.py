@@ -1,5 +1,6 @@
 """The cameras' settings, and the simulation's side of their feed; the child process is a fake."""
 
+import gc
 import os
 import subprocess
 from collections.abc import Sequence
@@ -222,6 +223,7 @@ def test_closing_ends_the_child_by_the_end_of_the_stream(started):
 
 
 def test_nothing_stays_open():
+    gc.collect()  # Nothing of earlier tests is closed meanwhile.
     before = sorted(os.listdir("/proc/self/fd"))
     world = World()
     world.feed.start(world.model)

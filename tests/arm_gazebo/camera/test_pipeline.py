@@ -1,5 +1,6 @@
 """The camera process turns the simulation's messages into images."""
 
+import gc
 import os
 
 import mujoco
@@ -263,6 +264,7 @@ def test_a_file_that_holds_no_model_is_refused(process, tmp_path, monkeypatch):
 
 
 def test_closing_frees_the_renderer_and_the_model(process):
+    gc.collect()  # Nothing of earlier tests is closed meanwhile.
     before = len(os.listdir("/proc/self/fd"))
     process.pipeline.handle([model_message(1), process.state(0.1), model_message(2)])
     process.pipeline.handle([process.state(0.2, version=2)])

@@ -45,6 +45,18 @@ def test_same_commands_give_the_same_run(bench, parts):
     assert run() == run()
 
 
+def test_poses_alone_are_those_of_the_whole_state(bench, parts):
+    arm = bench(parts.arm(), world="objects")
+    arm.claim()
+    arm.command(0.4, 1.0, 0.3, 0.2)
+    arm.run(0.2)
+    alone = arm.simulation.poses().xpos.copy()
+    whole = arm.simulation.observe()
+    assert np.array_equal(alone, whole.xpos)
+    assert whole.time == arm.simulation.time_s
+    assert whole.ncon, "what lies there touches the floor"
+
+
 def test_reset_puts_everything_back(bench, parts):
     arm = bench(parts.arm(j1_pos="0.5"))
     arm.claim()
@@ -110,3 +122,13 @@ def test_robot_that_cannot_move_is_simulated(parts):
     simulation = Physics(built, physics_timing(100))
     simulation.advance()
     assert simulation.time_s == pytest.approx(0.01)
+
+
+def test_a_heavier_body_is_evenly_denser(bench, parts):
+    physics = bench(parts.pendulum(), 100).simulation
+    body = physics.model.body("bob")
+    inertia, beside = body.inertia.copy(), body.subtreemass[0] - body.mass[0]
+    physics.set_mass("bob", 3.0)
+    assert body.mass[0] == 3.0
+    assert body.inertia == pytest.approx(3.0 * inertia)
+    assert body.subtreemass[0] == 3.0 + beside

@@ -254,12 +254,13 @@ def test_an_included_fifo_is_refused(world, tmp_path):
         world("<include><uri>fifo.sdf</uri></include>")
 
 
-def test_files_that_multiply_are_refused(world):
+def test_files_that_multiply_are_refused(world, monkeypatch):
+    monkeypatch.setattr("arm_gazebo.sdf.scope.MAX_MODELS", 500)
     models = {
         f"m{i}": model(f"m{i}", *(include(f"m{i + 1}", f"<name>n{k}</name>") for k in range(10)))
         for i in range(9)
     }
-    with pytest.raises(WorldError, match="the limit of 5000 models"):
+    with pytest.raises(WorldError, match="the limit of 500 models"):
         world(include("m0"), m9=model("m9", link("l")), **models)
 
 

@@ -10,9 +10,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from arm_sim import CallError
-from arm_sim.dataset import CameraStream, DatasetWriter, Samples, align, check_dataset
+from arm_sim.dataset import CameraStream, DatasetWriter, Samples, align, check_dataset, shared_files
 from arm_sim.dataset.writer import image_statistics, merged, statistics_of
 
 MS = 1_000_000
@@ -120,6 +122,15 @@ def test_statistics_of_images_are_by_channel_in_shares_of_white():
     assert found["mean"].tolist() == [[[0.0]], [[1.0]], [[0.0]]]
 
 
+@given(st.lists(st.integers(0, 255), min_size=1, max_size=60))
+def test_statistics_of_images_are_those_of_their_values(reds: list[int]):
+    image = np.zeros((1, len(reds), 3), dtype=np.uint8)
+    image[0, :, 0] = reds
+    found, wanted = image_statistics([image]), statistics_of(np.array(reds)[:, None] / 255.0)
+    for name in wanted.keys() - {"count"}:
+        assert found[name][0, 0, 0] == pytest.approx(wanted[name][0], abs=1e-9), name
+
+
 @pytest.fixture
 def written(tmp_path: Path) -> Path:
     folder = tmp_path / "demo"
@@ -137,13 +148,15 @@ def test_a_dataset_keeps_the_format(written: Path):
     info = json.loads((written / "meta/info.json").read_text())
     assert (info["codebase_version"], info["fps"], info["total_frames"]) == ("v3.0", 20, 12)
     assert info["features"]["observation.state"]["names"] == ["j0.pos", "j1.pos"]
-    rows = pq.read_table(written / "data/chunk-000/file-001.parquet")
-    assert rows["index"].to_pylist() == list(range(6, 12))
+    rows = pq.read_table(written / "data/chunk-000/file-000.parquet")
+    assert rows["index"].to_pylist() == list(range(12))
+    rows = rows.slice(6)
     assert rows["stamp_ns.front"].to_pylist()[0] == START + 1000 * MS
     assert rows["stamp_ns.action"].to_pylist() == [START + 1000 * MS] * 6
     assert rows["timestamp"].to_pylist() == pytest.approx([0.05 * k for k in range(6)])
-    raw = pq.read_table(written / "streams/action/episode-000001.parquet")
-    assert raw["stamp_ns"].to_pylist() == [START + 1000 * MS]
+    raw = pq.read_table(written / "streams/action/chunk-000/file-000.parquet")
+    assert raw["stamp_ns"].to_pylist() == [START, START + 1000 * MS]
+    assert raw["episode_index"].to_pylist() == [0, 1]
     source = json.loads((written / "meta/arm_suite.json").read_text())["episodes"][1]
     assert source["source"] == {"bag": "bag1000"}
     assert source["streams"][2]["repeated"] == 5
@@ -154,7 +167,27 @@ def test_the_frames_of_a_video_are_the_images_of_the_rows(written: Path):
     with av.open(str(path)) as video:
         frames = [frame.to_ndarray(format="rgb24") for frame in video.decode(video=0)]
     reds = [frame[..., 0].mean() for frame in frames]
-    assert reds == pytest.approx([40 * k for k in range(6)], abs=6)
+    assert reds == pytest.approx([40 * k for k in range(6)] * 2, abs=6)
+
+
+def test_a_full_file_is_followed_by_the_next_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(shared_files, "DATA_FILE_MB", 0)
+    monkeypatch.setattr(shared_files, "VIDEO_FILE_S", 0.6)
+    monkeypatch.setattr(shared_files, "FILES_IN_CHUNK", 2)
+    times = [50 * k for k in range(6)]
+    with DatasetWriter(tmp_path / "demo", "arm") as writer:
+        add(writer, *[[camera(times), state(times)]] * 5)
+        writer.finish()
+    assert check_dataset(tmp_path / "demo") == []
+    episodes = pq.read_table(tmp_path / "demo/meta/episodes/chunk-000/file-000.parquet").to_pylist()
+
+    def places(kind: str) -> list[tuple[int, int]]:
+        return [(one[f"{kind}/chunk_index"], one[f"{kind}/file_index"]) for one in episodes]
+
+    video = "videos/observation.images.front"
+    assert places("data") == [(0, 0), (0, 1), (1, 0), (1, 1), (2, 0)]
+    assert places(video) == [(0, 0), (0, 0), (0, 1), (0, 1), (1, 0)]
+    assert [one[f"{video}/from_timestamp"] for one in episodes] == [0.0, 0.3, 0.0, 0.3, 0.0]
 
 
 def test_tasks_have_the_index_that_pandas_reads(written: Path):
@@ -177,12 +210,14 @@ def shift_times(table: pa.Table) -> pa.Table:
 
 def test_faults_are_found(written: Path):
     change_rows(written, shift_times)
-    assert check_dataset(written) == ["episode 0: the timestamps are not frame / fps"]
+    assert check_dataset(written) == [
+        f"episode {number}: the timestamps are not frame / fps" for number in (0, 1)
+    ]
     change_rows(written, lambda table: table.drop_columns(["action"]))
     assert "episode 0 has the columns observation.state" in check_dataset(written)[0]
-    change_rows(written, lambda table: table.slice(0, 5))
+    change_rows(written, lambda table: table.slice(0, 11))
     assert check_dataset(written)[0] == "total_frames is 12, but there are 11"
-    (written / "videos/observation.images.front/chunk-000/file-001.mp4").unlink()
+    (written / "videos/observation.images.front/chunk-000/file-000.mp4").unlink()
     assert "episode 1 has no videos/" in check_dataset(written)[-1]
     (written / "meta/info.json").unlink()
     with pytest.raises(CallError, match="cannot be read as a dataset"):
@@ -196,9 +231,10 @@ def test_a_video_with_other_frames_is_found(written: Path):
         writer.add_episode(streams, align(streams, 0), "wave")
         writer.finish()
     short = written.with_name("short") / videos.relative_to(written) / "file-000.mp4"
-    (videos / "file-001.mp4").write_bytes(short.read_bytes())
+    (videos / "file-000.mp4").write_bytes(short.read_bytes())
     assert check_dataset(written) == [
-        "episode 1: not every row has a frame in observation.images.front"
+        f"episode {number}: not every row has a frame in observation.images.front"
+        for number in (0, 1)
     ]
 
 

@@ -18,7 +18,7 @@ class Cluster:
 
     def cluster_resources(self) -> dict[str, float]:
         self.asked.set()
-        self.answers.wait(10.0)
+        self.answers.wait(60.0)
         return {"CPU": 3.0}
 
 
@@ -26,7 +26,7 @@ class Cluster:
 def cluster(monkeypatch) -> Cluster:
     made = Cluster()
     head = SimpleNamespace(check=lambda: None, answers=lambda: True)
-    monkeypatch.setattr(ray_pool, "_join", lambda *_: "127.0.0.1:1")
+    monkeypatch.setattr(ray_pool, "join", lambda *_: "127.0.0.1:1")
     monkeypatch.setattr(ray_pool, "HeadWatch", lambda _: head)
     monkeypatch.setattr(ray_pool.ray, "cluster_resources", made.cluster_resources)
     return made
@@ -36,9 +36,9 @@ def test_the_size_never_waits_for_the_head(cluster, tmp_path):
     study = SimpleNamespace(task="task.py:run", seed=0)
     pool = RayPool("127.0.0.1:1", study, Path(tmp_path))  # pyright: ignore[reportArgumentType]
     assert pool.size() == 0
-    assert cluster.asked.wait(10.0)
+    assert cluster.asked.wait(60.0)
     assert pool.size() == 0
     cluster.answers.set()
     sizing: Thread = pool._sizing
-    sizing.join(10.0)
+    sizing.join(60.0)
     assert pool.size() == 3

@@ -1,0 +1,33 @@
+"""The policy that was learned from demonstrations picks in the real launch over ROS."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "pick_policy"
+TIMEOUT_S = 250.0
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+@pytest.mark.timeout(400)
+def test_the_policy_lifts_cylinders_over_ros(launch):
+    # At half speed, so that a busy machine does not miss a pick.
+    launched = launch("mycobot", "load_controllers:=false", "real_time_factor:=0.5")
+    launched.wait_until_ready()
+    spawn = ["run", "controller_manager", "spawner", "joint_state_broadcaster"]
+    parameters = ["pick_policy_controller", "--param-file", str(EXAMPLE / "controllers.yaml")]
+    subprocess.run([sys.executable, "-m", "arm_cli", *spawn, *parameters], check=True)
+    done = subprocess.run(
+        [sys.executable, str(EXAMPLE / "pick_node.py"), "--picks", "4", "--seed", "5"],
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT_S,
+        check=False,
+    )
+    said = re.search(r"(\d+) of 4 picks lifted the cylinder", done.stdout)
+    assert said, done.stdout + done.stderr
+    assert int(said[1]) >= 3, done.stderr
