@@ -3,7 +3,6 @@
 import importlib.util
 import os
 import sys
-import tempfile
 from collections.abc import MutableMapping, Sequence
 from pathlib import Path
 
@@ -20,6 +19,9 @@ INTERFACE_PACKAGES = (
 
 PLANNING_PACKAGES = ("moveit_msgs", "octomap_msgs", "object_recognition_msgs")
 """Those of motion planning, which the distribution arm-moveit-interfaces provides."""
+
+SEEING_PACKAGES = (*PLANNING_PACKAGES, "mycobot_interfaces")
+"""The same with that of the myCobot's depth camera."""
 
 MIDDLEWARE = "rmw_fastrtps_cpp"
 PACKAGES = Path("share", "ament_index", "resource_index", "packages")
@@ -70,7 +72,9 @@ def prepare_environment(
         environ["AMENT_PREFIX_PATH"] = os.pathsep.join(prefixes)
     _check_middleware(environ.get("RMW_IMPLEMENTATION", ""), prefixes)
     if "HOME" not in environ and "ROS_LOG_DIR" not in environ and "ROS_HOME" not in environ:
-        environ["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir()) / f"ros-log-{os.getuid()}")
+        from tempfile import gettempdir
+
+        environ["ROS_LOG_DIR"] = str(Path(gettempdir()) / f"ros-log-{os.getuid()}")
     check_interfaces((*INTERFACE_PACKAGES, *packages))
     remove_torn_ports()
     import_messages_lazily()
@@ -84,7 +88,7 @@ def check_interfaces(packages: Sequence[str]) -> None:
     """
     missing = [name for name in packages if importlib.util.find_spec(name) is None]
     if missing:
-        planning = {name in PLANNING_PACKAGES for name in missing}
+        planning = {name in SEEING_PACKAGES for name in missing}
         folders = ["./arm_interfaces"] * (False in planning)
         folders += ["./arm_moveit_interfaces"] * (True in planning)
         raise MissingInterfacesError(

@@ -27,6 +27,7 @@ from arm_node.notify import notify
 from arm_node.parameter_values import ParameterValueError
 from arm_node.printable import first_line, printable, printable_message
 from arm_node.user_file import MAX_TEXT_BYTES, check_file
+from arm_node.workarounds.deadlocked_end import DestructionLimit
 from arm_node.workarounds.local_profile import use_local_profile
 from arm_node.workarounds.private_files import hide_shared_memory, made_private
 from arm_node.workarounds.switch import switched_off
@@ -106,6 +107,7 @@ class NodeProcess:
         self.executor = SingleThreadedExecutor()
         self.exit_code = EXIT_OK
         self._stop = stop
+        self._destruction = DestructionLimit()
         self._spinning = ExecutorThread("executor", self.executor)
 
     @property
@@ -133,9 +135,12 @@ class NodeProcess:
     def join_spinning(self) -> None:
         """Stop the executor and join its thread; a thread that spins at exit aborts the process.
 
-        The application may call it in its teardown before it destroys nodes itself.
+        Only destroy nodes afterwards: see `DestructionLimit`. The application may call it in its
+        teardown before it destroys nodes itself.
         """
         self._spinning.stop()
+        if self.stopping:
+            self._destruction.start(self.exit_code)
 
     def destroy_nodes(self) -> None:
         """Stop the executor and destroy its nodes, unless a callback hangs.
@@ -150,6 +155,7 @@ class NodeProcess:
         if not is_spinning():
             for node in nodes:
                 node.destroy_node()
+        self._destruction.cancel()
 
 
 Application = Callable[[NodeProcess], AbstractContextManager[None]]

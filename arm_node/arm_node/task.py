@@ -21,6 +21,7 @@ def run_task(
     task: Task,
     argv: Sequence[str] | None = None,
     user_errors: tuple[type[Exception], ...] = (),
+    packages: Sequence[str] = (),
 ) -> int:
     """Run a task until it returns, and return its exit code.
 
@@ -32,6 +33,7 @@ def run_task(
         task: see `Task`.
         argv: ROS arguments of the process, after the program's name; default sys.argv.
         user_errors: errors with messages for the user: one FATAL line, no traceback, exit code 1.
+        packages: further interface packages that it needs, see `run_process`.
     """
 
     @contextmanager
@@ -47,7 +49,7 @@ def run_task(
         yield
         worker.join()
 
-    return run_process(application, argv, user_errors)
+    return run_process(application, argv, user_errors, packages)
 
 
 def _work(

@@ -57,6 +57,13 @@ class DiscoveryCheck:
             self._node.destroy_client(query.client)
         self._queries.clear()
 
+    def __str__(self) -> str:
+        """Say what is still missing, for a test that fails."""
+        waiting = [query for query in self._queries.values() if not query.is_answered]
+        if not waiting:
+            return f"known to those behind {self._topic}, which has no reader with a name"
+        return f"known to those behind {self._topic}: {', '.join(map(str, waiting))}"
+
     def _answered(self, process: bytes, reader: Any) -> bool:
         if process not in self._queries:
             if "UNKNOWN" in reader.node_name:
@@ -67,21 +74,31 @@ class DiscoveryCheck:
 
 
 class _Query:
-    """A request that is repeated, because its answer may be lost as well."""
+    """A request that is repeated, because its answer may be lost as well.
+
+    An answer to any of them counts: on a busy machine each may come later than the next request.
+    """
 
     def __init__(self, client: Any) -> None:
         self.client = client
-        self._future: Any = None
+        self._futures: list[Any] = []
         self._asked_s = 0.0
 
+    def __str__(self) -> str:
+        there = "there" if self.client.service_is_ready() else "not there"
+        return f"{self.client.srv_name} is {there}, {len(self._futures)} requests unanswered"
+
+    @property
+    def is_answered(self) -> bool:
+        return any(future.done() for future in self._futures)
+
     def answered(self) -> bool:
-        if self._future is not None and self._future.done():
+        """Return whether there was an answer; ask again now and then."""
+        if self.is_answered:
             return True
         now_s = time.monotonic()
         if now_s - self._asked_s > ASK_AGAIN_S and self.client.service_is_ready():
-            if self._future is not None:
-                self.client.remove_pending_request(self._future)
             request = GetTypeDescription.Request(type_hash=NO_TYPE_HASH)
-            self._future = self.client.call_async(request)
+            self._futures.append(self.client.call_async(request))
             self._asked_s = now_s
         return False

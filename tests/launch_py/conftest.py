@@ -10,7 +10,7 @@ import sys
 import textwrap
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeVar
 
@@ -18,6 +18,7 @@ import psutil
 import pytest
 from programs import Program
 
+from arm_node.ros_domain import domain_of_its_own
 from launch_py.launch_description import LaunchDescription, expand_description
 from launch_py.launch_description_sources import read_launch_file
 from launch_py.plan.steps import LaunchPlan
@@ -28,7 +29,7 @@ from launch_py.supervision.event_loop import EventLoop
 from launch_py.supervision.supervisor import Supervisor
 from launch_py.testing import FakeClock, FakeRunner, RecordingScreen
 
-TIMEOUT_S = 30.0
+TIMEOUT_S = 100.0
 T = TypeVar("T")
 IMPORTS = """
 import sys
@@ -231,6 +232,16 @@ def package_prefix(tmp_path, monkeypatch):
         return share
 
     return add
+
+
+@pytest.fixture(scope="session")
+def empty_domain() -> Iterator[int]:
+    """Return a ROS domain in which nobody listens but these tests.
+
+    Its ports are those of the whole machine: other tests look for participants in other domains.
+    """
+    with domain_of_its_own() as domain:
+        yield domain
 
 
 @pytest.fixture

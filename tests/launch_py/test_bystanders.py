@@ -8,8 +8,6 @@ import pytest
 
 from launch_py.fast_dds.participants import are_bystanders, find_ports
 
-DOMAIN = 231
-PORT = 7400 + 250 * DOMAIN + 10
 READER = """
 import fcntl, signal, sys
 lock = open(sys.argv[1], "w")
@@ -20,13 +18,14 @@ signal.pause()
 
 
 @pytest.fixture
-def ports(tmp_path):
+def ports(tmp_path, empty_domain):
     """Return a function that starts a process with a port in shared memory and finds the ports."""
     processes: list[subprocess.Popen[bytes]] = []
+    first = 7400 + 250 * empty_domain + 10
 
     def look(*arguments, index=0, **environment):
         plain = {name: text for name, text in os.environ.items() if name != "NOTIFY_SOCKET"}
-        lock = str(tmp_path / f"fastrtps_port{PORT + 2 * index}_el")
+        lock = str(tmp_path / f"fastrtps_port{first + 2 * index}_el")
         process = subprocess.Popen(
             [sys.executable, "-S", "-c", READER, lock, *arguments],
             stdout=subprocess.PIPE,
@@ -35,7 +34,7 @@ def ports(tmp_path):
         processes.append(process)
         assert process.stdout is not None
         assert process.stdout.readline() == b"up\n"
-        return find_ports(DOMAIN, str(tmp_path))
+        return find_ports(empty_domain, str(tmp_path))
 
     yield look
     for process in processes:

@@ -2,8 +2,8 @@
 
 Works around https://github.com/ros2/rclpy/issues/1378: an rclpy node that only listens to /clock
 takes a tenth of a core or more, and the process that publishes the time would listen to itself once
-for each of its nodes. Made for rclpy 7.1; if `stamp_clock` or `process_clock` is switched off, the
-nodes use /clock.
+for each of its nodes. Made for rclpy 7.1 and 9.1; if `stamp_clock` or `process_clock` is switched
+off, the nodes use /clock.
 """
 
 from collections.abc import Callable, Sequence

@@ -3,7 +3,7 @@
 A Fast DDS participant announces itself a moment before it starts to listen. A waiting peer answers
 within 0.3 ms, and only once. If the answer arrives before the participant listens, it is lost, and
 the two do not find each other until the next periodic announcement, up to 3 s later. This works
-around Fast DDS 2.14; no upstream issue is known.
+around Fast DDS 2.14 and 3.2; no upstream issue is known.
 """
 
 import logging

@@ -1,8 +1,8 @@
 """Ends a command without the pause that Fast DDS makes when its process exits.
 
 Fast DDS sleeps for 0.1 s while the process unloads it, although no participant is left. That is a
-tenth of the time of a command. This works around Fast DDS 2.14, whose `RTPSDomain::stopAll` sleeps;
-no upstream issue is known.
+tenth of the time of a command. This works around Fast DDS 2.14 and 3.2, whose `RTPSDomain::stopAll`
+sleeps; no upstream issue is known.
 """
 
 import os

@@ -2,8 +2,8 @@
 
 A joint state that the throttle drops costs rclpy as much as one that is used, because rclpy creates
 Python objects for every field; that takes four times as long as reading only the needed fields:
-https://github.com/ros2/rclpy/issues/836. Made for rclpy 7.1, whose subscriptions can return bytes.
-If it is switched off, and for bytes of another encoding, rclpy deserialises the message.
+https://github.com/ros2/rclpy/issues/836. Made for rclpy 7.1 and 9.1, whose subscriptions can return
+bytes. If it is switched off, and for bytes of another encoding, rclpy deserialises the message.
 
 The encoding is CDR (OMG DDS-RTPS 9.4.2.12): numbers are aligned to their size, counted from the end
 of the four-byte header; strings and sequences are preceded by their length.

@@ -6,19 +6,24 @@ subscriber, and in two datagrams to every participant during discovery. Therefor
 may have a twin X_localhost.xml with the same transports, which are themselves limited to this host.
 
 rmw_fastrtps behaves like this since https://github.com/ros2/rmw_fastrtps/pull/653. Made for the
-version in ROS 2 Jazzy, with Fast DDS 2.14.
+versions in ROS 2 Jazzy and Kilted.
 """
 
 import os
 from collections.abc import MutableMapping
 
-from arm_node.workarounds.switch import is_on
+from arm_node.workarounds.switch import is_on, uses_fast_dds_3
 
 RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
-PROFILE = "FASTRTPS_DEFAULT_PROFILES_FILE"
+OF_FAST_DDS_2, OF_FAST_DDS_3 = "FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE"
 STATIC_PEERS = "ROS_STATIC_PEERS"
 LOCALHOST, FROM_PROFILE = "LOCALHOST", "SYSTEM_DEFAULT"
 TWIN = "_localhost"
+
+
+def profile_variable() -> str:
+    """Return the variable from which Fast DDS takes a process's profile."""
+    return OF_FAST_DDS_3 if uses_fast_dds_3() else OF_FAST_DDS_2
 
 
 def use_local_profile(environ: MutableMapping[str, str]) -> None:
@@ -30,13 +35,14 @@ def use_local_profile(environ: MutableMapping[str, str]) -> None:
     Args:
         environ: the environment that rclpy will read; changed in place.
     """
-    stem, extension = os.path.splitext(environ.get(PROFILE, ""))
+    variable = profile_variable()
+    stem, extension = os.path.splitext(environ.get(variable, ""))
     twin = f"{stem}{TWIN}{extension}"
     if not is_on("local_profile"):
         return
     if environ.get(RANGE) != LOCALHOST or environ.get(STATIC_PEERS) or not os.path.isfile(twin):
         return
-    environ[PROFILE] = twin
+    environ[variable] = twin
     environ[RANGE] = FROM_PROFILE
 
 
@@ -46,8 +52,9 @@ def use_general_profile(environ: MutableMapping[str, str]) -> None:
     Args:
         environ: the child's environment; changed in place.
     """
-    stem, extension = os.path.splitext(environ.get(PROFILE, ""))
+    variable = profile_variable()
+    stem, extension = os.path.splitext(environ.get(variable, ""))
     if environ.get(RANGE) != FROM_PROFILE or not stem.endswith(TWIN):
         return
-    environ[PROFILE] = stem.removesuffix(TWIN) + extension
+    environ[variable] = stem.removesuffix(TWIN) + extension
     environ[RANGE] = LOCALHOST

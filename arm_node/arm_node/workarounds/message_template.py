@@ -3,7 +3,7 @@
 It is for messages that are published in every control cycle. To set the lists of an rclpy message
 and serialise it costs more than the rest of the cycle. Names and lengths never change, so every
 number stays at its place in the bytes, and a new value is a write of eight bytes. Works around
-https://github.com/ros2/rclpy/issues/836; made for rclpy 7.1.
+https://github.com/ros2/rclpy/issues/836; made for rclpy 7.1 and 9.1.
 
 The places are found by experiment: every number is set to a unique mark, the message is serialised,
 and each mark must be in exactly one aligned word. This is done twice with different marks. It
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message, serialize_message
 
+from arm_node.workarounds.cdr_layout import HEADER_BYTES, LITTLE_ENDIAN, CdrLayout
 from arm_node.workarounds.message_fields import (
     Field,
     Message,
@@ -33,9 +34,6 @@ from arm_node.workarounds.message_fields import (
     time_fields_at,
 )
 from arm_node.workarounds.switch import is_on
-
-HEADER_BYTES = 4
-"""The header of the encoding; alignment is counted from its end."""
 
 # Marks: tag << 32 | number, which are small normal float64s; tag << 20 | number, positive int32s.
 _TAGS_64 = itertools.cycle(range(0x3FA00000, 0x3FB00000))
@@ -55,6 +53,12 @@ def raw_sender(publisher: Publisher) -> Callable[[bytes], None]:
         publisher: is not destroyed while the function runs.
     """
     return publisher.handle.publish_raw if is_on("message_template") else publisher.publish
+
+
+def serialized(message: Message) -> bytes:
+    """Return a message's bytes without those that rclpy leaves behind its end."""
+    data, layout = serialize_message(message), CdrLayout(message)
+    return data[: layout.end] if layout.is_known and data.startswith(LITTLE_ENDIAN) else data
 
 
 class MessageTemplate:
@@ -179,7 +183,7 @@ class _SerializedLayout:
         Raises:
             MessageLayoutError: the numbers cannot be found.
         """
-        self._serialized = serialize_message(prototype)
+        self._serialized = serialized(prototype)
         self._size = len(self._serialized)
         self.message = deserialize_message(self._serialized, type(prototype))
         words = -(-(self._size - HEADER_BYTES) // 8)
@@ -216,7 +220,7 @@ class _SerializedLayout:
         for tag in itertools.islice(tags, _PASSES):
             message = deserialize_message(self._serialized, type(self.message))
             count = _mark(fields_of(message), word, tag << shift)
-            marked = self._words(serialize_message(message), word)
+            marked = self._words(serialized(message), word)
             here = marked >> shift == tag
             # Text or a length may equal one mark, but not both.
             found = here if found is None else found & here
@@ -257,7 +261,7 @@ class _PlainLayout:
 
     def to_bytes(self) -> bytes:
         self._set_numbers()
-        return serialize_message(self.message)
+        return serialized(self.message)
 
     def publish(self, publisher: Publisher) -> None:
         self._set_numbers()

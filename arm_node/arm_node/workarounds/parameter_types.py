@@ -1,8 +1,8 @@
 """Answers requests to set a parameter of a type that does not exist.
 
 rclpy raises an exception on such a request, so the client never gets an answer. This refuses the
-parameter with a reason. Made for rclpy 7.1; no upstream issue is known. If this is switched off,
-the client waits for ever.
+parameter with a reason. Made for rclpy 7.1 and 9.1; no upstream issue is known. If this is switched
+off, the client waits for ever.
 """
 
 from collections.abc import Callable

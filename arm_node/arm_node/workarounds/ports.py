@@ -1,4 +1,4 @@
-"""Mends the ports of Fast DDS 2.14 in shared memory: those that hang, deafen or delay processes.
+"""Mends the ports of Fast DDS in shared memory: those that hang, deafen or delay processes.
 
 Each is described at its function: `remove_torn_ports`, `lost_ports` and `shorten_liveness_pause`.
 The files that a process uses come from proc(5): Fast DDS maps its segments, ports and semaphores.
@@ -16,8 +16,8 @@ from contextlib import suppress
 from arm_node.workarounds.switch import is_on
 
 OWN_PROCESS = "/proc/self"
-_PORT_LOCK = re.compile(r"(/.*/fastrtps_port\d+)_el( \(deleted\))?")
-_MAPPED = re.compile(r"/dev/shm/.*fastrtps_.*")
+_PORT_LOCK = re.compile(r"(/.*/fast(?:rtps|dds)_port\d+)_el( \(deleted\))?")
+_MAPPED = re.compile(r"/dev/shm/.*fast(?:rtps|dds)_.*")
 _DELETED = " (deleted)"
 
 
@@ -58,7 +58,7 @@ def read_ports(process: str = OWN_PROCESS) -> dict[str, bool]:
 SHM_FOLDER = "/dev/shm"
 LEAST_AGE_S = 3.0
 """A living process finishes a new port within milliseconds."""
-_PORT_FILE = re.compile(r"fastrtps_port\d+")
+_PORT_FILE = re.compile(r"fast(?:rtps|dds)_port\d+")
 _STATE = struct.Struct("=I")
 _FILLED = 2
 """First number in a complete file of Boost.Interprocess; it is 0 or 1 before that."""

@@ -4,8 +4,8 @@ Logs tell what a robot does, and all messages can be read in shared memory. The 
 locks and semaphores. Fast DDS sets the permissions of its segments itself, so this module changes
 them afterwards. Sending needs write permission, which other users never had.
 
-If this is switched off, only the shared memory keeps the permissions that Fast DDS 2.14 sets. No
-upstream issue is known.
+If this is switched off, only the shared memory keeps the permissions that Fast DDS 2.14 and 3.2
+sets. No upstream issue is known.
 """
 
 import os
@@ -18,7 +18,7 @@ from arm_node.workarounds.switch import is_on
 
 UMASK = 0o077
 OWNER_ONLY = 0o600
-_SHARED_MEMORY = re.compile(r"/dev/shm/(?:sem\.)?fastrtps_\w+")
+_SHARED_MEMORY = re.compile(r"/dev/shm/(?:sem\.)?fast(?:rtps|dds)_\w+")
 
 
 @contextmanager

@@ -25,7 +25,7 @@ def switch_off_profiler(mujoco: ModuleType) -> None:
     if not is_on("profiler"):
         library = LIBRARIES["profiler"]
         if not library.fits:
-            logger.info("workaround profiler is off: made for MuJoCo %s", library.made_for)
+            logger.info("workaround profiler is off: made for %s", library)
         return
     # The library's name contains the version and depends on the platform.
     for library in Path(mujoco.__file__ or "").parent.glob("*mujoco*"):

@@ -20,19 +20,23 @@ class Library:
 
     Attributes:
         name: the name in messages.
-        made_for: the beginning of the versions that the workarounds are made for.
+        made_for: the beginnings of the versions that the workarounds are made for.
         find_version: returns the version in use: empty if it is unknown or another library is
             used instead, None if this process has not loaded the library.
     """
 
     name: str
-    made_for: str
+    made_for: tuple[str, ...]
     find_version: Callable[[], str | None]
 
     @property
     def fits(self) -> bool:
         """Whether the workarounds are made for the version in use."""
-        return f"{self.find_version()}.".startswith(f"{self.made_for}.")
+        return f"{self.find_version()}.".startswith(tuple(f"{one}." for one in self.made_for))
+
+    def __str__(self) -> str:
+        """Return the name and the versions that the workarounds are made for."""
+        return f"{self.name} {' and '.join(self.made_for)}"
 
 
 @cache
@@ -65,10 +69,13 @@ def _package_version(name: str) -> str:
     return ""
 
 
-RMW = Library("rmw_fastrtps", "8.4", _rmw_version)
-"""The version of ROS 2 Jazzy; it uses Fast DDS 2.14."""
-RCLPY = Library("rclpy", "7.1", _rclpy_version)
-MUJOCO = Library("MuJoCo", "4.0", _mujoco_version)
+RMW = Library("rmw_fastrtps", ("8.4", "9.3"), _rmw_version)
+"""The versions of ROS 2 Jazzy, which uses Fast DDS 2.14, and Kilted, which uses 3.2."""
+RCLPY = Library("rclpy", ("7.1", "9.1"), _rclpy_version)
+MUJOCO = Library("MuJoCo", ("4.0",), _mujoco_version)
+
+FIRST_ON_FAST_DDS_3 = 9
+"""The first major version of rmw_fastrtps that uses Fast DDS 3."""
 
 LIBRARIES: Mapping[str, Library] = {
     "discovery": RMW,
@@ -76,6 +83,7 @@ LIBRARIES: Mapping[str, Library] = {
     "torn_ports": RMW,
     "lost_ports": RMW,
     "exit_pause": RMW,
+    "deadlocked_end": RMW,
     "private_files": RMW,
     "local_profile": RMW,
     "message_template": RCLPY,
@@ -93,6 +101,12 @@ OF_THE_BUILD = ("parse_cache", "template_cache")
 """The workarounds in the build of arm_interfaces, which imports no package of the suite."""
 
 
+def uses_fast_dds_3() -> bool:
+    """Return whether the middleware of this process is Fast DDS 3, and not 2 or another."""
+    major = (RMW.find_version() or "").partition(".")[0]
+    return major.isdecimal() and int(major) >= FIRST_ON_FAST_DDS_3
+
+
 @cache
 def is_on(name: str) -> bool:
     """Return whether a workaround of `LIBRARIES` is on; decided once in each process."""
@@ -107,7 +121,7 @@ def switched_off(environ: Mapping[str, str] = os.environ) -> str:
             reasons.setdefault(f"by {VARIABLE}", []).append(name)
         elif not library.fits and (version := library.find_version()) is not None:
             found = version or "unknown or not in use"
-            why = f"made for {library.name} {library.made_for}; the version here is {found}"
+            why = f"made for {library}; the version here is {found}"
             reasons.setdefault(why, []).append(name)
     parts = [f"{', '.join(names)} ({why})" for why, names in reasons.items()]
     unknown = sorted(_named(environ) - {*LIBRARIES, *OF_THE_BUILD, ALL})

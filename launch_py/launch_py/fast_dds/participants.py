@@ -24,7 +24,7 @@ UDP_TABLES = ("/proc/net/udp", "/proc/net/udp6")
 PID_BITS = 0xFFFF
 """Fast DDS puts only this part of the process id into a participant's GUID."""
 
-_READ_LOCK = re.compile(r"fastrtps_port(\d+)_el")
+_READ_LOCK = re.compile(r"fast(?:rtps|dds)_port(\d+)_el")
 _SOCKET = re.compile(r"socket:\[(\d+)\]")
 
 

@@ -28,7 +28,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 
 from launch_py.fast_dds.shared_memory import (
-    PORT_PREFIX,
+    PORT_PREFIXES,
     SHM_FOLDER,
     hide,
     lock_names,
@@ -57,7 +57,7 @@ def remove_unused(stems: Iterable[str], folder: str) -> list[str]:
             for stem in stems
             for name in (
                 _remove_port(stem, folder)
-                if stem.startswith(PORT_PREFIX)
+                if stem.startswith(PORT_PREFIXES)
                 else _remove_segment(stem, folder)
             )
         ]
@@ -193,7 +193,7 @@ class SharedMemoryLedger:
         return any(os.path.exists(os.path.join(self._folder, name)) for name in names)
 
 
-_FILE = re.compile(r"(?:sem\.)?(fastrtps_(?:port\d+|[0-9a-f]+))(?:_[es]l|_mutex)?")
+_FILE = re.compile(r"(?:sem\.)?(fast(?:rtps|dds)_(?:port\d+|[0-9a-f]+))(?:_[es]l|_mutex)?")
 
 
 def remove_abandoned(folder: str = SHM_FOLDER) -> list[str]:

@@ -2,22 +2,26 @@
 
 A segment `fastrtps_X` comes with a lock file `fastrtps_X_el`, on which its owner holds a lock: the
 kernel's list of locks says which process owns which segment. A port `fastrtps_portN` is a segment
-to which other processes send. Such a process has the port mapped, without a lock.
+to which other processes send. Such a process has the port mapped, without a lock. In Fast DDS 3 the
+names begin with `fastdds_`.
 """
 
 from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 
 SHM_FOLDER = "/dev/shm"
-PREFIX = "fastrtps_"
-PORT_PREFIX = "fastrtps_port"
+PREFIXES = ("fastrtps_", "fastdds_")
+PORT_PREFIXES = tuple(f"{prefix}port" for prefix in PREFIXES)
 LOCK_SUFFIXES = ("_el", "_sl")
 OTHERS = 0o077
 OWNER_ONLY = 0o600
+LOCK_LIST = "/proc/locks"
+_READS = 5
+_LARGE = 1 << 16
 _IN_CREATE = 0x100
 
 
@@ -36,7 +40,7 @@ def lock_files(folder: str) -> dict[str, int]:
     found: dict[str, int] = {}
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
-            if entry.name.startswith(PREFIX) and entry.name.endswith(LOCK_SUFFIXES):
+            if entry.name.startswith(PREFIXES) and entry.name.endswith(LOCK_SUFFIXES):
                 found[entry.name[:-3]] = entry.inode()
     return found
 
@@ -47,15 +51,32 @@ def lock_owners(folder: str) -> dict[int, set[int]]:
     See proc_locks(5): the sixth field is major:minor:inode, the first two in hexadecimal.
     """
     owners: dict[int, set[int]] = {}
-    with suppress(OSError), open("/proc/locks", encoding="ascii") as file:
+    with suppress(OSError):
         device = os.stat(folder).st_dev
         prefix = f"{os.major(device):02x}:{os.minor(device):02x}:"
-        for line in file:
+        for line in _listed_locks():
             fields = line.split()
             if len(fields) >= 6 and fields[1] == "FLOCK" and fields[5].startswith(prefix):
                 inode = int(fields[5].removeprefix(prefix))
                 owners.setdefault(inode, set()).add(int(fields[4]))
     return owners
+
+
+def _listed_locks() -> Iterator[str]:
+    """Yield the lines of the kernel's list; of a long list some come again.
+
+    The kernel gives a page at a time, and leaves out a line where another lock goes between two
+    pages: up to one list of fifteen lacked a lock that was held. So a long list is read again.
+    """
+    for _ in range(_READS):
+        fd = os.open(LOCK_LIST, os.O_RDONLY)
+        try:
+            pages = list(iter(lambda fd=fd: os.read(fd, _LARGE), b""))
+        finally:
+            os.close(fd)
+        yield from b"".join(pages).decode().splitlines()
+        if len(pages) <= 1:
+            return
 
 
 def locked_segments(folder: str) -> set[str]:

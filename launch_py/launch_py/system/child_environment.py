@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from launch_py.errors import NotFoundError
-from launch_py.system.packages import Packages, ament_prefixes
+from launch_py.system.dds_profile import RANGE, keep_to_loopback, shipped_profile
+from launch_py.system.packages import ament_prefixes
 
 
 def log_root(environ: Mapping[str, str]) -> Path:
@@ -34,10 +34,6 @@ def launch_name() -> str:
 
 BOOTSTRAP_GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 LIBRARY_PATH = "LD_LIBRARY_PATH"
-RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
-STATIC_PEERS = "ROS_STATIC_PEERS"
-PROFILE = "FASTRTPS_DEFAULT_PROFILES_FILE"
-FAST_DDS = "rmw_fastrtps"
 
 
 def default_environment(
@@ -58,12 +54,9 @@ def default_environment(
         notify_address: the address of the supervisor's notification socket.
         colours: whether the output goes to a terminal in colour.
     """
-    defaults = {RANGE: "LOCALHOST", "PYTHONUNBUFFERED": "1"}
+    defaults = {RANGE: "LOCALHOST", "PYTHONUNBUFFERED": "1", **shipped_profile(environ)}
     if log_folder is not None:
         defaults["ROS_LOG_DIR"] = str(log_folder)
-    profile = dds_profile(environ)
-    if profile is not None:
-        defaults[PROFILE] = str(profile)
     if colours:
         defaults["RCUTILS_COLORIZED_OUTPUT"] = "1"
     added = {name: value for name, value in defaults.items() if name not in environ}
@@ -71,15 +64,6 @@ def default_environment(
     if notify_address is not None:
         added["NOTIFY_SOCKET"] = notify_address
     return added
-
-
-def dds_profile(environ: Mapping[str, str]) -> Path | None:
-    """Return the shipped Fast DDS profile, or None if launch_py is installed without its data."""
-    try:
-        path = Packages(environ).share_folder("launch_py") / "config" / "dds_profile.xml"
-    except NotFoundError:
-        return None
-    return path if path.is_file() else None
 
 
 def for_program(program: str, environ: Mapping[str, str]) -> dict[str, str]:
@@ -92,7 +76,7 @@ def for_program(program: str, environ: Mapping[str, str]) -> dict[str, str]:
     on the loopback interface only.
     """
     adapted = dict(environ)
-    _keep_to_loopback(adapted)
+    keep_to_loopback(adapted)
     if program == sys.executable or BOOTSTRAP_GUARD not in adapted:
         return adapted
     del adapted[BOOTSTRAP_GUARD]
@@ -102,24 +86,3 @@ def for_program(program: str, environ: Mapping[str, str]) -> dict[str, str]:
     if foreign:
         adapted[LIBRARY_PATH] = os.pathsep.join(foreign)
     return adapted
-
-
-def _keep_to_loopback(environ: dict[str, str]) -> None:
-    """Replace a profile by its `_localhost` variant if the discovery range is LOCALHOST.
-
-    rmw_fastrtps listens on every network interface even with LOCALHOST, and answers any host that
-    names this one in ROS_STATIC_PEERS. The variant has a whitelist of interfaces. It also states
-    the meaning of LOCALHOST itself, so that rmw_fastrtps adds no transport of its own. The suite's
-    own nodes do the same (`arm_node.workarounds.local_profile`); this covers all other programs.
-    ARM_WITHOUT switches both off.
-    """
-    switched_off = {word.strip() for word in environ.get("ARM_WITHOUT", "").split(",")}
-    if not switched_off.isdisjoint({"local_profile", "all"}):
-        return
-    stem, extension = os.path.splitext(environ.get(PROFILE, ""))
-    variant = f"{stem}_localhost{extension}"
-    local = environ.get(RANGE) == "LOCALHOST" and not environ.get(STATIC_PEERS)
-    fast_dds = (environ.get("RMW_IMPLEMENTATION") or FAST_DDS).startswith(FAST_DDS)
-    if local and fast_dds and os.path.isfile(variant):
-        environ[PROFILE] = variant
-        environ[RANGE] = "SYSTEM_DEFAULT"

@@ -77,17 +77,28 @@ print(json.dumps([own_msgs.msg.ANSWER, "own_msgs.msg._own" in sys.modules]))"""
     assert said(code) == [42, True]
 
 
-def test_a_node_with_its_services_needs_no_numpy():
+def test_a_node_with_its_services_needs_neither_numpy_nor_the_parser_of_the_generator():
     code = """
 import rclpy
 from sensor_msgs.msg import JointState
 rclpy.init()
 node = rclpy.create_node("plain")
 node.create_subscription(JointState, "joint_states", print, 1)
-print(json.dumps(["numpy" in sys.modules]))
+print(json.dumps([name in sys.modules for name in ("rosidl_generator_py", "numpy", "lark", "em")]))
 node.destroy_node()
 rclpy.shutdown()"""
-    assert said(code) == [False]
+    assert said(code) == [True, False, False, False]
+
+
+def test_the_generator_still_generates():
+    code = """
+import rosidl_generator_py
+from rosidl_generator_py import generate_py, import_type_support
+names = [generate_py.__module__, import_type_support.__module__]
+print(json.dumps([*names, hasattr(rosidl_generator_py, "generate_cpp")]))"""
+    package = "rosidl_generator_py"
+    expected = [f"{package}.generate_py_impl", f"{package}.import_type_support_impl", False]
+    assert said(code) == expected
 
 
 def test_arrays_of_messages_are_numpys():

@@ -4,7 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from arm_node.workarounds.local_profile import use_general_profile, use_local_profile
+from arm_node.workarounds.local_profile import (
+    profile_variable,
+    use_general_profile,
+    use_local_profile,
+)
 
 pytestmark = pytest.mark.workaround("local_profile")
 
@@ -18,7 +22,7 @@ def profile(tmp_path: Path) -> Path:
 
 def environment(profile: Path | str, **more: str) -> dict[str, str]:
     return {
-        "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile),
+        profile_variable(): str(profile),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         **more,
     }
@@ -28,7 +32,7 @@ def test_localhost_is_left_to_the_other_profile(profile: Path) -> None:
     environ = environment(profile, HOME="/home/me")
     use_local_profile(environ)
     assert environ == {
-        "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile.with_name("net_localhost.xml")),
+        profile_variable(): str(profile.with_name("net_localhost.xml")),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
         "HOME": "/home/me",
     }

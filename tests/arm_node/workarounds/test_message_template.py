@@ -16,8 +16,9 @@ from tf2_msgs.msg import TFMessage
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from arm_node.workarounds import message_template
+from arm_node.workarounds.cdr_layout import HEADER_BYTES, LITTLE_ENDIAN
 from arm_node.workarounds.message_fields import MessageLayoutError
-from arm_node.workarounds.message_template import HEADER_BYTES, MessageTemplate
+from arm_node.workarounds.message_template import MessageTemplate
 
 STAMP_NS = 1_234_567_890_123_456_789
 
@@ -288,12 +289,13 @@ def without_the_workaround(request, monkeypatch):
 
 
 def scrambled(data: bytes) -> bytes:
-    """Move every number by one byte, as an encoding without alignment would."""
-    return data[:HEADER_BYTES] + b"\0" + data[HEADER_BYTES:]
+    """Move every number by one byte, as an encoding without alignment would, and say so."""
+    return b"\0\x99" + data[2:HEADER_BYTES] + b"\0" + data[HEADER_BYTES:]
 
 
 def read_scrambled(data: bytes, kind: type) -> Any:
-    return deserialize_message(data[:HEADER_BYTES] + data[HEADER_BYTES + 1 :], kind)
+    plain = LITTLE_ENDIAN + data[2:HEADER_BYTES] + data[HEADER_BYTES + 1 :]
+    return deserialize_message(plain, kind)
 
 
 def test_without_the_workaround_rclpy_serialises_the_same(without_the_workaround):

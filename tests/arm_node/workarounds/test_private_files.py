@@ -45,9 +45,10 @@ def test_files_made_inside_are_this_user_s_alone(tmp_path):
     assert rights(tmp_path / "after") == 0o644
 
 
-def test_shared_memory_in_use_is_hidden_and_nothing_else(shared):
-    mapped, semaphore = shared("fastrtps_mapped"), shared("sem.fastrtps_port_mutex")
-    lock, unused, other = shared("fastrtps_x_el"), shared("fastrtps_unused"), shared("other")
+@pytest.mark.parametrize("name", ["fastrtps", "fastdds"])
+def test_shared_memory_in_use_is_hidden_and_nothing_else(shared, name):
+    mapped, semaphore = shared(f"{name}_mapped"), shared(f"sem.{name}_port_mutex")
+    lock, unused, other = shared(f"{name}_x_el"), shared(f"{name}_unused"), shared("other")
     with mapped.open("r+b") as one, semaphore.open("r+b") as two, other.open("r+b") as three:
         maps = [mmap.mmap(file.fileno(), 0) for file in (one, two, three)]
     with lock.open():

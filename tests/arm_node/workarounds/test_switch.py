@@ -33,7 +33,7 @@ def asked(code: str, **variables: str) -> str:
     [("2.14", True), ("2.14.5", True), ("2.140.0", False), ("2.1", False), ("3.1.0", False)],
 )
 def test_a_workaround_is_for_the_versions_that_begin_like_its_own(version, fits):
-    assert Library("Fast DDS", "2.14", lambda: version).fits == fits
+    assert Library("Fast DDS", ("2.14",), lambda: version).fits == fits
 
 
 def test_with_the_wheels_of_this_suite_all_are_on():
@@ -71,11 +71,11 @@ def test_an_unknown_name_is_reported_with_the_existing_ones():
 
 
 def test_with_another_version_they_are_off_and_say_so(tmp_path):
-    manifest(tmp_path, "rmw_fastrtps_cpp", "9.3.1")
+    manifest(tmp_path, "rmw_fastrtps_cpp", "10.0.1")
     code = "print(is_on('discovery'), is_on('stamp_clock'), switched_off())"
     said = asked(code, AMENT_PREFIX_PATH=str(tmp_path), ARM_WITHOUT="")
     assert said.startswith("False True workarounds that are off: discovery, signs_of_life")
-    assert said.endswith("(made for rmw_fastrtps 8.4; the version here is 9.3.1)")
+    assert said.endswith("(made for rmw_fastrtps 8.4 and 9.3; the version here is 10.0.1)")
 
 
 def test_with_another_middleware_those_of_fast_dds_are_off():

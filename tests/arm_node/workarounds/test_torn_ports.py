@@ -25,9 +25,10 @@ def make(folder: Path, name: str, content: bytes = b"", age_s: float = LEAST_AGE
 
 
 @pytest.mark.parametrize("content", [b"", b"\x02", bytes(64), BEGUN])
-def test_a_port_that_was_never_finished_goes(tmp_path: Path, content: bytes) -> None:
-    port = make(tmp_path, "fastrtps_port7661", content)
-    assert remove_torn_ports(str(tmp_path)) == ["fastrtps_port7661"]
+@pytest.mark.parametrize("name", ["fastrtps_port7661", "fastdds_port7661"])
+def test_a_port_that_was_never_finished_goes(tmp_path: Path, name: str, content: bytes) -> None:
+    port = make(tmp_path, name, content)
+    assert remove_torn_ports(str(tmp_path)) == [name]
     assert not port.exists()
 
 

@@ -51,6 +51,13 @@ def test_only_the_files_of_a_dead_process_are_removed(folder):
     assert sweep(folder) == set()
 
 
+def test_the_files_of_fast_dds_3_are_removed_too(shm_folder):
+    names = {name.replace("fastrtps", "fastdds") for name in (*SEGMENT, *PORT)}
+    for name in names:
+        (shm_folder / name).write_bytes(b"\0" * 64)
+    assert sweep(shm_folder) == names
+
+
 def test_a_mutex_stays_while_any_participant_lives(folder):
     """Another process may wait to open it."""
     with (folder / "fastrtps_1_el").open("w") as file:

@@ -17,46 +17,52 @@ from launch_py.fast_dds.participants import (
     processes_with,
 )
 
-DOMAIN = 231
-FIRST = 7400 + 250 * DOMAIN + 10
+
+@pytest.fixture
+def first(empty_domain) -> int:
+    """Return the first port of a participant in a domain without any."""
+    return 7400 + 250 * empty_domain + 10
 
 
 def bound(port: int) -> socket.socket:
     one = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    # A port beside the domain may be one on which participants of the next listen together.
+    one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     one.bind(("127.0.0.1", port))
     return one
 
 
-def test_participants_are_counted_by_their_ports():
-    with bound(FIRST), bound(FIRST + 1), bound(FIRST + 4):
-        assert find_ports(DOMAIN).indices == {0, 2}
-    assert not find_ports(DOMAIN).indices
+def test_participants_are_counted_by_their_ports(first, empty_domain):
+    with bound(first), bound(first + 1), bound(first + 4):
+        assert find_ports(empty_domain).indices == {0, 2}
+    assert not find_ports(empty_domain).indices
 
 
-@pytest.mark.parametrize("port", [FIRST - 11, FIRST - 10, FIRST - 1, FIRST + 240])
-def test_a_port_outside_the_domain_is_not_a_participant(port):
-    with bound(port):
-        assert not find_ports(DOMAIN).indices
+@pytest.mark.parametrize("offset", [-11, -10, -1, 240])
+def test_a_port_outside_the_domain_is_not_a_participant(first, empty_domain, offset):
+    with bound(first + offset):
+        assert not find_ports(empty_domain).indices
 
 
-def test_a_locked_port_in_shared_memory_is_a_participant(tmp_path):
+@pytest.mark.parametrize("port", ["fastrtps_port", "fastdds_port"])
+def test_a_locked_port_in_shared_memory_is_a_participant(tmp_path, first, empty_domain, port):
     import fcntl
 
-    for name in (f"fastrtps_port{FIRST + 3}_el", f"fastrtps_port{FIRST + 7}_el"):
+    for name in (f"{port}{first + 3}_el", f"{port}{first + 7}_el"):
         (tmp_path / name).touch()
-    with (tmp_path / f"fastrtps_port{FIRST + 3}_el").open() as lock:
+    with (tmp_path / f"{port}{first + 3}_el").open() as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        ports = find_ports(DOMAIN, str(tmp_path))
+        ports = find_ports(empty_domain, str(tmp_path))
     assert ports.indices == {1}
     assert ports.lock_owners == {os.getpid()}
     assert ports.owners == {1: {os.getpid()}}
 
 
-def test_a_process_counts_only_if_it_listens_on_a_port_of_the_domain():
+def test_a_process_counts_only_if_it_listens_on_a_port_of_the_domain(first, empty_domain):
     bits = os.getpid() & PID_BITS
     assert os.getpid() in processes_with(bits)
-    with bound(FIRST):
-        ports = find_ports(DOMAIN)
+    with bound(first):
+        ports = find_ports(empty_domain)
         assert own_processes(bits, ports) == [os.getpid()]
         code = "import signal; print('up', flush=True); signal.pause()"
         other = subprocess.Popen([sys.executable, "-S", "-c", code], stdout=subprocess.PIPE)

@@ -1,6 +1,7 @@
 """Exit handlers and shutdown handlers during the shutdown."""
 
 import signal
+import textwrap
 import threading
 
 import pytest
@@ -194,8 +195,21 @@ def test_a_mistake_in_a_shutdown_handler_is_reported_in_the_last_line(trial, by_
 # Real processes
 
 
-def test_real_exits_during_a_shutdown(launch):
-    launched = launch(
+PATIENT = """
+from launch_py.supervision import event_handling
+
+event_handling.HANDLER_TIMEOUT_S = 100.0
+"""
+
+
+@pytest.fixture
+def launch_patiently(launch):
+    """Launch actions whose handlers have as long as they need on a busy machine."""
+    return lambda actions: launch(PATIENT + textwrap.dedent(actions))
+
+
+def test_real_exits_during_a_shutdown(launch_patiently):
+    launched = launch_patiently(
         """
         def tell(event, context):
             sys.stdout.write(f"{event.process_name} FN\\n")
@@ -239,8 +253,8 @@ def test_a_second_ctrl_c_stops_at_once_even_if_a_function_hangs(launch, actions)
     assert launched.wait() == 130, launched.output
 
 
-def test_a_process_that_a_function_runs_keeps_its_exit_code(launch):
-    launched = launch(
+def test_a_process_that_a_function_runs_keeps_its_exit_code(launch_patiently):
+    launched = launch_patiently(
         """
         import subprocess
 
@@ -263,8 +277,8 @@ def test_a_process_that_a_function_runs_keeps_its_exit_code(launch):
     assert "CODES {3}" in launched.lines
 
 
-def test_a_process_that_a_function_left_running_keeps_its_exit_code(launch):
-    launched = launch(
+def test_a_process_that_a_function_left_running_keeps_its_exit_code(launch_patiently):
+    launched = launch_patiently(
         """
         import subprocess
         children = []

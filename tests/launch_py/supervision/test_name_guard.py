@@ -18,13 +18,10 @@ from launch_py.supervision.event_loop import EventLoop
 from launch_py.supervision.name_guard import LOOK_TIMEOUT_S, SETTLE_TIMEOUT_S, NameGuard
 from launch_py.testing import FakeClock, RecordingScreen
 
-DOMAIN = 231
-PORT = 7400 + 250 * DOMAIN + 10
-HERE = {"ROS_DOMAIN_ID": str(DOMAIN), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-PARTICIPANT = f"""
-import signal, socket
+PARTICIPANT = """
+import signal, socket, sys
 reader = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-reader.bind(("127.0.0.1", {PORT}))
+reader.bind(("127.0.0.1", int(sys.argv[1])))
 print("up", flush=True)
 signal.pause()
 """
@@ -55,7 +52,7 @@ class FakeProbes:
 
 @dataclass
 class FakeRunner:
-    environment: dict = field(default_factory=lambda: dict(HERE))
+    environment: dict
     sessions: set = field(default_factory=set)
 
     def environment_of(self, step):
@@ -63,11 +60,11 @@ class FakeRunner:
 
 
 class Trial:
-    def __init__(self, logs, replace=False, **environment):
+    def __init__(self, logs, replace, environment):
         self.clock = FakeClock()
         self.loop = EventLoop(self.clock)
         self.probes = FakeProbes()
-        self.runner = FakeRunner({**HERE, **environment})
+        self.runner = FakeRunner(environment)
         self.screen = RecordingScreen()
         self.refusals: list[str] = []
         reporter = Reporter(self.screen, logs)
@@ -87,12 +84,13 @@ class Trial:
 
 
 @pytest.fixture
-def trial(tmp_path):
+def trial(tmp_path, empty_domain):
     logs = LogFolder(tmp_path)
+    here = {"ROS_DOMAIN_ID": str(empty_domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     trials: list[Trial] = []
 
     def begin(replace=False, **environment):
-        trials.append(Trial(logs, replace, **environment))
+        trials.append(Trial(logs, replace, {**here, **environment}))
         return trials[-1]
 
     yield begin
@@ -102,9 +100,16 @@ def trial(tmp_path):
 
 
 @pytest.fixture
-def participant():
+def port(empty_domain) -> int:
+    """The first port of a participant in the domain."""
+    return 7400 + 250 * empty_domain + 10
+
+
+@pytest.fixture
+def participant(port):
     """A process of this user that listens on a port of the domain."""
-    process = subprocess.Popen([sys.executable, "-S", "-c", PARTICIPANT], stdout=subprocess.PIPE)
+    command = [sys.executable, "-S", "-c", PARTICIPANT, str(port)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE)
     assert process.stdout is not None
     assert process.stdout.readline() == b"up\n"
     yield process
@@ -114,9 +119,9 @@ def participant():
 
 
 @pytest.fixture
-def somebody():
+def somebody(port):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as reader:
-        reader.bind(("127.0.0.1", PORT))
+        reader.bind(("127.0.0.1", port))
         yield
 
 

@@ -179,11 +179,26 @@ def test_a_second_ctrl_c_stops_now(launch):
 
 
 def test_a_signal_sent_twice_at_once_counts_once(launch):
-    launched = launch("actions = [forever('a')]")
+    launched = launch(
+        """
+        from launch_py.supervision import session
+
+        session.REPEATED_SIGNAL_S = 1000.0  # However late the second one comes.
+        CODE = '''
+        import signal
+        signal.signal(signal.SIGINT, lambda *_: print("got SIGINT", flush=True))
+        print("up", flush=True)
+        while True: signal.pause()
+        '''
+        actions = [python("a", CODE, ready=LogLine("up"), sigterm_timeout=1.0)]
+        """
+    )
     launched.wait_for("^ready ")
     launched.process.send_signal(signal.SIGINT)
+    launched.wait_for("got SIGINT")
     launched.process.send_signal(signal.SIGINT)
     assert launched.wait() == 0
+    assert "second Ctrl-C" not in launched.output
 
 
 def test_a_crash_loop_gives_up_and_says_so(launch):

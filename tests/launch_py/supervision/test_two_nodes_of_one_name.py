@@ -52,21 +52,20 @@ def old(launch):
 def test_a_second_node_with_the_same_name_is_not_started(launch, old):
     second = launch(NEW)
     assert second.wait() == 1
-    assert second.lines[:-1] == []
+    (said,) = second.own_words
     assert re.search(
-        r"failed with exit code 1: /left/arm is already on the ROS graph, from process \d+: ",
-        second.lines[-1],
+        r"failed with exit code 1: /left/arm is already on the ROS graph, from process \d+: ", said
     )
-    assert "replace:=true" in second.lines[-1]
+    assert "replace:=true" in said
     old.process.send_signal(signal.SIGINT)
     assert old.wait() == 0
 
 
-def test_replace_replaces_the_first_node(launch, old):
+def test_replace_replaces_the_first_node(launch, old, waiting):
     second = launch(NEW, "replace:=true")
     second.wait_for("^ready ")
     said = second.wait_for("^.launch. ending process .*: this launch replaces /left/arm")
-    assert not os.path.exists(f"/proc/{re.findall('[0-9]+', said)[0]}")
+    assert not waiting.running(int(re.findall("[0-9]+", said)[0]))
     assert old.wait() == 0
     old.wait_for("old ended with exit code 0")
     second.process.send_signal(signal.SIGINT)
@@ -78,7 +77,7 @@ def test_a_node_that_names_itself_is_detected_once_it_appears(launch):
     first.wait_for("^ready ")
     second = launch(f"{NODE}actions = [tested('new')]")
     assert second.wait() == 1
-    assert "/nameless is already on the ROS graph, from process" in second.lines[-1]
+    assert "/nameless is already on the ROS graph, from process" in second.own_words[-1]
     second.wait_for("new stopped")
     first.process.send_signal(signal.SIGINT)
     assert first.wait() == 0

@@ -7,7 +7,10 @@ from pathlib import Path
 import pytest
 
 from launch_py.system.child_environment import default_environment, for_program
+from launch_py.system.dds_profile import OF_FAST_DDS_2, profile_variables
 
+VARIABLE, *_ = profile_variables(os.environ)
+STEM = "dds_profile" if VARIABLE == OF_FAST_DDS_2 else "dds_profile_fast_dds_3"
 GUARD = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 OWN_LIBRARIES = os.path.join(sys.prefix, "lib")
 
@@ -29,7 +32,7 @@ def test_the_defaults():
 def test_variables_of_the_user_are_kept():
     environ = {
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
-        "FASTRTPS_DEFAULT_PROFILES_FILE": "/mine.xml",
+        VARIABLE: "/mine.xml",
         "ROS_LOG_DIR": "/my/logs",
     }
     assert not environ.keys() & defaults(environ).keys()
@@ -49,8 +52,8 @@ def test_colours_on_a_terminal():
 
 
 def test_the_shipped_dds_profile_is_given():
-    profile = Path(defaults(dict(os.environ))["FASTRTPS_DEFAULT_PROFILES_FILE"])
-    assert profile.name == "dds_profile.xml"
+    profile = Path(defaults(dict(os.environ))[VARIABLE])
+    assert profile.name == f"{STEM}.xml"
     assert profile.is_file()
 
 
@@ -71,16 +74,14 @@ def test_without_the_guard_the_library_path_is_the_users():
 
 def _network(program: str, **environ: str) -> tuple[str, str]:
     adapted = for_program(program, environ)
-    return adapted["ROS_AUTOMATIC_DISCOVERY_RANGE"], Path(
-        adapted["FASTRTPS_DEFAULT_PROFILES_FILE"]
-    ).name
+    return adapted["ROS_AUTOMATIC_DISCOVERY_RANGE"], Path(adapted[VARIABLE]).name
 
 
 def test_localhost_means_the_profile_that_listens_on_loopback_only():
     given = defaults(dict(os.environ) | {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"})
     given["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     for program in (sys.executable, "/usr/bin/other"):
-        assert _network(program, **given) == ("SYSTEM_DEFAULT", "dds_profile_localhost.xml")
+        assert _network(program, **given) == ("SYSTEM_DEFAULT", f"{STEM}_localhost.xml")
 
 
 @pytest.mark.parametrize(
@@ -95,17 +96,17 @@ def test_any_other_range_keeps_the_general_profile(wish):
     given = {**defaults({}), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", **wish}
     assert _network(sys.executable, **given) == (
         given["ROS_AUTOMATIC_DISCOVERY_RANGE"],
-        "dds_profile.xml",
+        f"{STEM}.xml",
     )
 
 
 @pytest.mark.parametrize("names", ["local_profile", "discovery, local_profile", "all"])
 def test_the_profile_for_this_host_can_be_switched_off(names):
     given = {**defaults({}), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ARM_WITHOUT": names}
-    assert _network(sys.executable, **given) == ("LOCALHOST", "dds_profile.xml")
+    assert _network(sys.executable, **given) == ("LOCALHOST", f"{STEM}.xml")
 
 
 def test_a_profile_of_the_users_own_stays(tmp_path):
     mine = tmp_path / "mine.xml"
-    given = {**defaults({}), "FASTRTPS_DEFAULT_PROFILES_FILE": str(mine)}
+    given = {**defaults({}), VARIABLE: str(mine)}
     assert _network(sys.executable, **given) == ("LOCALHOST", "mine.xml")

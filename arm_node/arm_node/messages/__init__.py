@@ -1,0 +1,1 @@
+"""Converts messages to text and text to messages."""
