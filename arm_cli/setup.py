@@ -8,6 +8,7 @@ PACKAGE = "arm_cli"
 NEIGHBOURS = [
     "../arm_control",
     "../arm_description",
+    "../arm_drivers",
     "../arm_gazebo",
     "../arm_node",
     "../arm_planning",

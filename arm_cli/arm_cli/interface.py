@@ -92,7 +92,7 @@ def show(options: argparse.Namespace) -> None:
 def proto(options: argparse.Namespace) -> None:
     """Print the type's fields (a service's request, an action's goal) with their default values."""
     type_ = InterfaceIndex().find(options.type)
-    from arm_cli.messages.text import to_yaml
+    from arm_node.messages.text import to_yaml
 
     class_ = load_class(type_)
     part = {"msg": class_, "srv": getattr(class_, "Request", None), "action": None}[type_.kind]

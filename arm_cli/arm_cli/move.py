@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from arm_cli.arguments import JSON, Argument, Exclusive, Flag, positive_number, verb
 from arm_cli.errors import CommandUsageError, NoSuchNameError
-from arm_cli.output import say
+from arm_cli.output import complain, say
 from arm_cli.ros.connection import connect
 
 if TYPE_CHECKING:
@@ -72,6 +72,8 @@ def move(options: argparse.Namespace) -> None:
         timeout_s = options.time + EXTRA_TIME_S if options.plan_only else None
         goal = _goal(model, group, options, client)
         result = client.move(_request(group, goal, options), timeout_s)
+    if result.error_code.message:
+        complain(f"arm move: {result.error_code.message}")
     if options.json:
         say(json.dumps(_document(result)))
     elif result.planned_trajectory.joint_trajectory.points:
@@ -88,7 +90,7 @@ def _group(model: "PlanningModel", name: str) -> "JointGroup":
             iter(model.groups.values())
         )
     try:
-        return model.group(name)
+        return model.group(name) if name else model.default_group()
     except PlanningError as error:
         raise NoSuchNameError(str(error)) from error
 

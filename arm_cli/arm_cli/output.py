@@ -4,6 +4,7 @@ Names and strings come from other processes, so all output is made safe for a te
 """
 
 import math
+import shutil
 import sys
 from typing import Any
 
@@ -14,6 +15,15 @@ def say(*lines: object) -> None:
     """Print each argument as one line."""
     for line in lines:
         print(printable(str(line)))
+
+
+def say_in_place(line: str) -> None:
+    """Print a line over the one that was printed so before; without a screen as a new line."""
+    if not sys.stdout.isatty():
+        say(line)
+        return
+    width = shutil.get_terminal_size().columns - 1
+    print(f"\r\033[K{printable(line)[:width]}", end="", flush=True)
 
 
 def say_document(text: str, end: str = "\n") -> None:

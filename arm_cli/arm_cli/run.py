@@ -1,10 +1,12 @@
 """`arm run` and `arm view`: replace this process by an executable of a package."""
 
 import argparse
+import json
 import os
 import shlex
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import NoReturn
 
 from arm_cli.arguments import Argument, CommandParser, Flag, verb
@@ -15,6 +17,7 @@ from launch_py.system.child_environment import default_environment, for_program
 from launch_py.system.packages import Packages
 
 DEFAULT_PORT = 8080
+LOCAL_HOST = "127.0.0.1"
 
 
 def packages(**_: object) -> list[str]:
@@ -91,11 +94,33 @@ def find_command(package: str, name: str) -> tuple[str, ...]:
 
 @verb(
     Argument(
+        "recording",
+        nargs="?",
+        type=Path,
+        metavar="RECORDING",
+        help="bag or run to show first: a folder or an .mcap file, or a file of arm sim record, "
+        "which is verified; no simulation is needed",
+    ),
+    Argument(
+        "--recordings",
+        type=Path,
+        metavar="DIR",
+        help="folder of the recordings that the page lists and makes (default: this one)",
+    ),
+    Argument(
         "--port",
         type=int,
         default=DEFAULT_PORT,
-        help=f"port of the page on 127.0.0.1 (default {DEFAULT_PORT})",
+        help=f"port of the page (default {DEFAULT_PORT})",
     ),
+    Argument(
+        "--host",
+        metavar="ADDRESS",
+        default=LOCAL_HOST,
+        help=f"address to listen on (default {LOCAL_HOST}: this machine alone); 0.0.0.0 serves "
+        "other machines, to browsers that open the address with the token that is printed",
+    ),
+    Flag("--read-only", help="let nobody do more than look; otherwise a second token does that"),
     Flag(
         "--publish-joint-states",
         help="publish joint states from the page's sliders, without a robot",
@@ -103,7 +128,12 @@ def find_command(package: str, name: str) -> tuple[str, ...]:
 )
 def view(options: argparse.Namespace) -> NoReturn:
     """Replace this process by the node of the page."""
-    publish = "true" if options.publish_joint_states else "false"
-    parameters = (f"port:={options.port}", f"publish_joint_states:={publish}")
+    # A number would not be a string of ROS.
+    parameters = [f"port:={options.port}", f"host:='{options.host}'"]
+    parameters += ["publish_joint_states:=true"] * options.publish_joint_states
+    parameters += ["read_only:=true"] * options.read_only
+    # As JSON, so that a name such as 1.0 stays a text.
+    paths = {"recordings": options.recordings, "recording": options.recording}
+    parameters += [f"{n}:={json.dumps(str(path))}" for n, path in paths.items() if path]
     words = [word for parameter in parameters for word in ("-p", parameter)]
     replace_process([*find_command("arm_viewer", "arm_viewer_node"), "--ros-args", *words])

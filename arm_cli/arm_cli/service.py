@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 def call(options: argparse.Namespace) -> None:
     """Call the service and print its answer."""
     type_ = InterfaceIndex().find(options.service_type, ("srv",))
-    from arm_cli.messages.filling import fill_message, read_yaml
+    from arm_node.messages.filling import fill_message, read_yaml
 
     class_ = load_class(type_)
     text = sys.stdin.read() if options.stdin else options.values
@@ -60,7 +60,7 @@ def call(options: argparse.Namespace) -> None:
                 say_document(f"requester: making request: {filled.message!r}\n")
             answer = _answer(session, client, filled.message, options.timeout)
             if options.json:
-                from arm_cli.messages.text import to_plain
+                from arm_node.messages.text import to_plain
 
                 print_json(to_plain(answer))
             else:
@@ -121,7 +121,7 @@ QUEUE = 100
 )
 def echo(options: argparse.Namespace) -> None:
     """Print the events of the service until a signal or the timeout."""
-    from arm_cli.messages.text import to_plain, to_yaml
+    from arm_node.messages.text import to_plain, to_yaml
 
     count = 0
 

@@ -32,14 +32,14 @@ ANSWER_TIMEOUT_S = 10.0
 def stop(options: argparse.Namespace) -> None:
     """Stop or release the robots, and print what each service answers."""
     with connect() as session:
-        robots = _EmergencyStop(session, engaged=not options.release)
+        robots = EmergencyStop(session, engaged=not options.release)
         if options.namespace is not None:
             robots.call(f"{absolute_name(options.namespace).rstrip('/')}{SERVICE}")
         else:
             robots.call_all()
 
 
-class _EmergencyStop:
+class EmergencyStop:
     """Calls the services of one kind: those that stop, or those that release."""
 
     def __init__(self, session: "CommandSession", *, engaged: bool) -> None:

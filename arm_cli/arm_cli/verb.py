@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Protocol, cast
 
 from arm_cli.errors import ArmCliError
 from arm_cli.output import complain, say_document
+from arm_node.messages.errors import MessageValueError
 
 if TYPE_CHECKING:
     from arm_cli.arguments import CommandParser, Declaration, VerbFunction
@@ -168,7 +169,7 @@ def run_reporting_errors(program: str, action: Callable[[], int | None]) -> int:
             # Some libraries turn Ctrl-C into an error of their own; other errors are raised again.
             if interruption.came:
                 raise KeyboardInterrupt from error
-            if not isinstance(error, ArmCliError):
+            if not isinstance(error, ArmCliError | MessageValueError):
                 raise
             complain(f"{program}: {error}")
-            return error.exit_code
+            return error.exit_code if isinstance(error, ArmCliError) else ArmCliError.exit_code

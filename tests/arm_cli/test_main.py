@@ -66,7 +66,7 @@ def test_help_imports_no_verb():
         "sys.exit(', '.join(heavy & sys.modules.keys()) or 0)"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=30, check=False
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=100, check=False
     )
     assert (done.returncode, done.stderr) == (0, "")
 
@@ -76,7 +76,7 @@ def test_python_m_arm_cli_is_the_command():
         [sys.executable, "-m", "arm_cli", "--version"],
         capture_output=True,
         text=True,
-        timeout=30,
+        timeout=100,
         check=False,
     )
     assert done.stdout.startswith("arm ")
@@ -89,7 +89,7 @@ def test_with_closed_standard_streams_the_output_is_discarded(closed, module):
         ["sh", "-c", f"exec {sys.executable} -m {module} {closed}"],
         capture_output=True,
         text=True,
-        timeout=30,
+        timeout=100,
         check=False,
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

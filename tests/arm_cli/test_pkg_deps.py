@@ -49,7 +49,7 @@ def test_nothing_missing_is_success(workspace, capsys):
 
 
 def test_only_what_pip_has_is_installed(workspace, monkeypatch, capsys):
-    src = workspace("arm_a", "python3-serial", "moveit_core", "rclpy", "xacro")
+    src = workspace("arm_a", "python3-transforms3d", "moveit_core", "rclpy", "xacro")
     ran: list[list[str]] = []
 
     def take(command, **_):
@@ -58,7 +58,7 @@ def test_only_what_pip_has_is_installed(workspace, monkeypatch, capsys):
 
     monkeypatch.setattr(subprocess, "run", take)
     assert main(["pkg", "deps", str(src), "--install"]) == 1
-    assert [command[1:] for command in ran] == [["-m", "pip", "install", "pyserial"]]
+    assert [command[1:] for command in ran] == [["-m", "pip", "install", "transforms3d"]]
     assert "moveit_core" in capsys.readouterr().out
 
 

@@ -11,12 +11,12 @@ from arm_cli.bag_format.topic import BagTopic, find_definition
 from arm_cli.bag_format.writer import BagSettings, BagWriter
 from arm_cli.interface_types import InterfaceIndex
 from arm_cli.main import main
-from arm_cli.messages.fields import FieldPath
-from arm_cli.messages.text import COMPLETE
 from arm_cli.output import colour, complain, print_json, say, say_document
 from arm_cli.topic.echo import MessagePrinter
+from arm_cli.topic.message_parts import FieldPath
 from arm_cli.verb import Runnable, Verb, VerbFamily
 from arm_cli.verbs import ARM
+from arm_node.messages.text import COMPLETE
 
 HOSTILE = "a\x1b[2J\x1b]0;owned\x07\x9b\n---\nforged\u202e"
 SHOWN = r"a\x1b[2J\x1b]0;owned\x07\x9b\n---\nforged\u202e"

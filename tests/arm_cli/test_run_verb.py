@@ -179,8 +179,22 @@ def test_view_replaces_the_process_by_the_page(monkeypatch):
     monkeypatch.setattr(os, "execvpe", take_over)
     assert main(["view", "--port", "8123", "--publish-joint-states"]) == 2
     assert "arm_viewer_node" in " ".join(called["command"])
-    parameters = ["-p", "port:=8123", "-p", "publish_joint_states:=true"]
-    assert called["command"][-5:] == ["--ros-args", *parameters]
+    parameters = ["-p", "port:=8123", "-p", "host:='127.0.0.1'", "-p", "publish_joint_states:=true"]
+    assert called["command"][-7:] == ["--ros-args", *parameters]
+    assert main(["view", "--host", "0.0.0.0", "--read-only"]) == 2
+    assert called["command"][-4:] == ["-p", "host:='0.0.0.0'", "-p", "read_only:=true"]
+
+
+def test_view_opens_a_recording(monkeypatch):
+    called = {}
+
+    def take_over(_program, command, _environment):
+        called.update(command=command)
+        raise OSError(2, "gone")
+
+    monkeypatch.setattr(os, "execvpe", take_over)
+    assert main(["view", "run 1.mcap", "--recordings", "1.0"]) == 2
+    assert called["command"][-4:] == ["-p", 'recordings:="1.0"', "-p", 'recording:="run 1.mcap"']
 
 
 def test_pkg_lists_executables_that_run_by_another_name(capsys):

@@ -15,10 +15,10 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.task import Future
 
 from arm_cli.errors import StoppedError, UnansweredError
-from arm_cli.messages.filling import FilledMessage
-from arm_cli.messages.text import to_yaml
 from arm_cli.output import say, say_document
 from arm_cli.ros.session import CommandSession
+from arm_node.messages.filling import FilledMessage
+from arm_node.messages.text import to_yaml
 
 WAIT_S = 1.0
 """How long a reason may arrive after the response, on another connection."""

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 def send_goal(options: argparse.Namespace) -> None:
     """Send the goal and print its progress and result; Ctrl-C cancels it."""
     type_ = InterfaceIndex().find(options.action_type, ("action",))
-    from arm_cli.messages.filling import fill_message, read_yaml
+    from arm_node.messages.filling import fill_message, read_yaml
 
     class_ = load_class(type_)
     text = sys.stdin.read() if options.stdin else options.goal

@@ -20,6 +20,7 @@ from arm_cli.errors import BagError, CommandUsageError, StoppedError
 from arm_cli.output import complain
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
+from arm_node.ros_distribution import ros_distribution
 
 if TYPE_CHECKING:
     from collections import Counter
@@ -210,7 +211,7 @@ def _settings(options: argparse.Namespace) -> "BagSettings":
         compression=options.compression or _PRESETS[options.storage_preset_profile],
         max_size_bytes=options.max_bag_size or None,
         max_duration_ns=None if duration_s is None else round(duration_s * 1e9),
-        ros_distro=os.environ.get("ROS_DISTRO", "jazzy"),
+        ros_distro=os.environ.get("ROS_DISTRO", ros_distribution()),
     )
 
 

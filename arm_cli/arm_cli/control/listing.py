@@ -155,7 +155,7 @@ def list_hardware_interfaces(options: argparse.Namespace) -> None:
     with ask_manager(options) as manager:
         interfaces = manager.hardware_interfaces()
     if options.json:
-        from arm_cli.messages.text import to_plain
+        from arm_node.messages.text import to_plain
 
         print_json(to_plain(interfaces))
         return

@@ -51,7 +51,7 @@ def state_colour(state: str) -> int:
 
 def plain(messages: list[Any]) -> list[Any]:
     """Return messages as dicts, for `--json`."""
-    from arm_cli.messages.text import to_plain
+    from arm_node.messages.text import to_plain
 
     return [to_plain(message) for message in messages]
 

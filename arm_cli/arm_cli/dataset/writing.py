@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from arm_cli.arguments import Argument, positive_number, positive_whole_number, verb
 from arm_cli.bag.info import existing_path
+from arm_cli.dataset.expert import EXPERT, OF_EXPERTS, show
 from arm_cli.dataset.selection import TOPICS, DatasetOptions, choose_topics, dataset_options
 from arm_cli.errors import ArmCliError, BagError, StoppedError
 from arm_cli.output import complain, say
@@ -18,14 +19,8 @@ from arm_cli.ros.connection import connect
 if TYPE_CHECKING:
     from arm_sim.dataset import DatasetWriter
 
-DATASET = (
-    Argument(
-        "--task", required=True, metavar="TEXT", help="what the demonstrations show, in words"
-    ),
-    Argument("--robot", default="arm", metavar="NAME", help="name of the robot (arm)"),
-    TOPICS,
-)
-"""The arguments of all verbs that write datasets."""
+UNNAMED = "arm"
+ROBOT = Argument("--robot", metavar="NAME", help=f"name of the robot ({UNNAMED})")
 
 
 @verb(
@@ -33,13 +28,16 @@ DATASET = (
         "bags", nargs="+", type=existing_path, metavar="BAG", help="a bag; each is one episode"
     ),
     Argument("-o", "--output", required=True, type=Path, metavar="DIR", help="folder to create"),
-    *DATASET,
+    Argument(
+        "--task", required=True, metavar="TEXT", help="what the demonstrations show, in words"
+    ),
+    ROBOT,
+    TOPICS,
 )
 def convert(options: argparse.Namespace) -> None:
     """Write the dataset; errors as `write_dataset`."""
-    write_dataset(
-        options.bags, options.output, options.task, options.robot, dataset_options(options)
-    )
+    robot = options.robot or UNNAMED
+    write_dataset(options.bags, options.output, options.task, robot, dataset_options(options))
 
 
 def write_dataset(
@@ -110,7 +108,8 @@ NODE_NAME = "dataset_recorder"
 
 
 @verb(
-    Argument("output", type=Path, metavar="DIR", help="folder to create"),
+    Argument("output", type=Path, nargs="?", metavar="DIR", help="folder to create"),
+    Argument("-o", "--output", dest="folder", type=Path, metavar="DIR", help="the same"),
     Argument(
         "-d",
         "--duration",
@@ -126,18 +125,33 @@ NODE_NAME = "dataset_recorder"
         metavar="N",
         help="episodes, one after the other (default 1); more need --duration",
     ),
-    *DATASET,
+    Argument("--task", metavar="TEXT", help="what the demonstrations show, in words"),
+    ROBOT,
+    TOPICS,
+    EXPERT,
 )
 def record(options: argparse.Namespace) -> None:
     """Record a bag for each episode beside the dataset, then write the dataset."""
+    if (options.output is None) == (options.folder is None):
+        raise ArmCliError("record needs one folder: arm dataset record DIR")
+    output = options.output or options.folder
+    if options.expert is not None:
+        show(options, output)
+        return
+    if options.task is None:
+        raise ArmCliError("record needs --task: what the demonstrations show, in words")
+    given = [f"--{name}" for name in OF_EXPERTS if getattr(options, name) is not None]
+    if given:
+        raise ArmCliError(f"{given[0]} is for --expert; a running robot is recorded without it")
     if options.episodes > 1 and options.duration is None:
         raise ArmCliError("several episodes need --duration")
-    bags = options.output.with_name(f"{options.output.name}_bags")
-    for folder in (options.output, bags):
+    bags = output.with_name(f"{output.name}_bags")
+    for folder in (output, bags):
         if folder.exists():
             raise ArmCliError(f"{folder} exists; choose a new folder")
     recorded = _record(bags, options.episodes, options.duration)
-    write_dataset(recorded, options.output, options.task, options.robot, dataset_options(options))
+    robot = options.robot or UNNAMED
+    write_dataset(recorded, output, options.task, robot, dataset_options(options))
     complain(f"the messages themselves are in {bags}")
 
 

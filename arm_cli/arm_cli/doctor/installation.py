@@ -19,11 +19,11 @@ from pathlib import Path
 
 from arm_cli.doctor.diagnosis import Diagnosis
 from arm_cli.names import this_domain
+from arm_node.ros_distribution import ros_distribution
 
 TIMEOUT_S = 60.0
 OLDEST, NEWEST = (3, 11), (3, 13)
 SYSTEM, MACHINE = "Linux", "x86_64"
-DISTRIBUTION = "jazzy"
 SUITE = "arm-suite"
 INSTALL = "pip install . from the arm suite's folder"
 REQUIREMENT = re.compile(r"(?P<name>[\w.-]+)(\[[^]]*\])?\s*(==\s*(?P<version>[\w.]+))?")
@@ -151,14 +151,15 @@ def check_rclpy(environ: Mapping[str, str]) -> Diagnosis:
             f"rclpy from {folder} does not load: {trial.complaint}",
             OPEN_ANOTHER if environ.get("ROS_DISTRO") else f"{INSTALL}, again",
         )
-    if environ.get("ROS_DISTRO", DISTRIBUTION) != DISTRIBUTION:
+    distribution = ros_distribution()
+    if environ.get("ROS_DISTRO", distribution) != distribution:
         return Diagnosis.warning(
             name,
             f"rclpy loads from {folder}, but {which}: its libraries may interfere, and its "
             "messages differ",
             OPEN_ANOTHER,
         )
-    return Diagnosis.ok(name, f"rclpy loads from {folder}")
+    return Diagnosis.ok(name, f"rclpy of ROS 2 {distribution.capitalize()} loads from {folder}")
 
 
 def check_wheels(path: Sequence[str] | None = None) -> Diagnosis:
@@ -296,11 +297,12 @@ ROOMY_BYTES = 128 << 20
 """Below this, cameras use smaller buffers. Docker's default is 64 MiB."""
 LEAST_AGE_S = 30.0
 """Younger segments are ignored, because a process locks its segment a moment after creating it."""
-PREFIX, LOCK_SUFFIX = "fastrtps_", "_el"
+LOCKS, LOCK_SUFFIX = ("fastrtps_*_el", "fastdds_*_el"), "_el"
+"""Those of Fast DDS 2, and of 3."""
 HOST, PORT = "127.0.0.1", 8080
 HTTP_TIMEOUT_S = 2.0
 OWNER_HEADER = "Arm-Suite-Page"
-"""A header of the page's answers: its user id and ROS domain."""
+"""A header of the page's answers: its user id and ROS domain, and its address if it has tokens."""
 
 
 def check_shared_memory(folder: Path = SHARED_MEMORY) -> Diagnosis:
@@ -329,17 +331,18 @@ def _judge_space(folder: Path, free_bytes: int, abandoned: list[str]) -> Diagnos
     if free_bytes < ROOMY_BYTES:
         return Diagnosis.warning("shared memory", f"{free}: large pictures may be lost", more)
     if abandoned:
+        prefix = f"{abandoned[0].partition('_')[0]}_"
         return Diagnosis.warning(
             "shared memory",
             f"{free}; killed ROS processes left {len(abandoned)} segments there, "
             f"such as {abandoned[0]}",
-            f"when no ROS program runs: rm -f {folder}/{PREFIX}* {folder}/sem.{PREFIX}*",
+            f"when no ROS program runs: rm -f {folder}/{prefix}* {folder}/sem.{prefix}*",
         )
     return Diagnosis.ok("shared memory", free)
 
 
 def _abandoned_segments(folder: Path) -> list[str]:
-    locks = sorted(folder.glob(f"{PREFIX}*{LOCK_SUFFIX}"))
+    locks = sorted(path for pattern in LOCKS for path in folder.glob(pattern))
     return [lock.name.removesuffix(LOCK_SUFFIX) for lock in locks if _is_abandoned(lock)]
 
 
@@ -373,7 +376,7 @@ def check_page_port(port: int = PORT) -> Diagnosis:
             f"ss -tlpn 'sport = :{port}' shows which; end it, or use another port for the page: "
             f"{other}",
         )
-    user, _, domain = owner.partition(" ")
+    user, domain, host = [*owner.split(" "), "", ""][:3]
     strange = [f"user {user}"] * (user != str(os.getuid()))
     strange += [f"ROS_DOMAIN_ID={domain}"] * (f"ROS_DOMAIN_ID={domain}" != this_domain())
     if strange:
@@ -383,7 +386,8 @@ def check_page_port(port: int = PORT) -> Diagnosis:
             f"user {os.getuid()} on {this_domain()}",
             f"use another port for a page of your own: {other}",
         )
-    return Diagnosis.ok("page", f"a page is running on http://{HOST}:{port}")
+    reach = f"; on {host} it serves other machines, with a token" if host else ""
+    return Diagnosis.ok("page", f"a page is running on http://{HOST}:{port}{reach}")
 
 
 def _is_free(port: int) -> bool:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
 from functools import partial
 
-from arm_cli.arguments import JSON, verb
+from arm_cli.arguments import JSON, Argument, verb
 from arm_cli.doctor.diagnosis import Diagnosis, Severity
 from arm_cli.doctor.installation import (
     check_compilers,
@@ -62,11 +62,18 @@ COLOURS = {Severity.OK: 92, Severity.WARNING: 93, Severity.ERROR: 91}
 SEVERITY_WIDTH = max(map(len, Severity))
 
 
-@verb(JSON)
+@verb(
+    Argument(
+        "--port",
+        metavar="PORT",
+        help="check the real arm on this serial port instead, such as /dev/ttyUSB0",
+    ),
+    JSON,
+)
 def doctor(options: argparse.Namespace) -> int:
     """Print each finding as soon as it is available; return 1 if there is an error."""
     findings: list[Diagnosis] = []
-    for finding in _examine():
+    for finding in _examine() if options.port is None else _examine_arm(options.port):
         findings.append(finding)
         if not options.json:
             say_coloured(_line(finding))
@@ -114,6 +121,13 @@ def examine_running(observation: GraphObservation) -> list[Diagnosis]:
 def is_healthy(findings: list[Diagnosis]) -> bool:
     """Return whether there is no error."""
     return all(finding.severity is not Severity.ERROR for finding in findings)
+
+
+def _examine_arm(port: str) -> Iterator[Diagnosis]:
+    # Imported here, because the other checks need no driver.
+    from arm_cli.doctor.real_arm import examine_port
+
+    yield from examine_port(port)
 
 
 def _examine() -> Iterator[Diagnosis]:

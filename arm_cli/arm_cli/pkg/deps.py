@@ -13,6 +13,7 @@ from pathlib import Path
 from arm_cli.arguments import JSON, Argument, Flag, verb
 from arm_cli.errors import CommandUsageError, NoSuchNameError
 from arm_cli.output import print_json, say
+from arm_node.ros_distribution import ros_distribution
 from arm_node.user_file import read_text
 from launch_py.system.packages import Packages
 
@@ -183,7 +184,7 @@ def apt_name(name: str) -> str:
     """Return the name of a dependency's apt package."""
     if name.startswith("python3-") or name.startswith("lib"):
         return name
-    return f"ros-jazzy-{name.replace('_', '-')}"
+    return f"ros-{ros_distribution()}-{name.replace('_', '-')}"
 
 
 def print_table(found: Sequence[_Dependency]) -> None:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from arm_cli.errors import CommandUsageError
 from arm_node.environment import UnusableEnvironmentError, prepare_environment
-from arm_node.workarounds.local_profile import PROFILE, use_local_profile
+from arm_node.workarounds.local_profile import use_local_profile
 from launch_py.fast_dds.removal import remove_abandoned
 from launch_py.standard_streams import library_output_on_stderr
-from launch_py.system.child_environment import dds_profile
+from launch_py.system.dds_profile import shipped_profile
 
 if TYPE_CHECKING:
     from arm_cli.ros.graph import Graph
@@ -33,10 +33,8 @@ def connect(name: str | None = None, use_sim_time: bool = False) -> Iterator["Co
     except UnusableEnvironmentError as error:
         raise CommandUsageError(str(error)) from error
     remove_abandoned()
-    profile = dds_profile(os.environ)
-    if profile is not None:
-        os.environ.setdefault(PROFILE, str(profile))
-        use_local_profile(os.environ)
+    os.environ.update(shipped_profile(os.environ))
+    use_local_profile(os.environ)
     from arm_cli.ros.session import open_session
 
     with library_output_on_stderr(), open_session(name, use_sim_time) as session:

@@ -7,6 +7,7 @@ checked between two spins, so a command never ends in the middle of a callback, 
 
 import os
 import signal
+import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -29,6 +30,7 @@ from arm_cli.errors import CommandUsageError, StoppedError
 from arm_cli.names import absolute_name
 from arm_cli.output import complain
 from arm_node.printable import first_line
+from arm_node.workarounds.deadlocked_end import DestructionLimit
 from arm_node.workarounds.discovery import first_node
 from arm_node.workarounds.private_files import made_private
 
@@ -119,13 +121,16 @@ class CommandSession:
             StoppedError: a signal arrived.
         """
         start = time.monotonic()
+        if timeout_s is not None and timeout_s <= NOTICE_AFTER_S:
+            waiting_for = None
         while not condition():
             waited = time.monotonic() - start
-            if timeout_s is not None and waited >= timeout_s:
-                return False
+            # Before the end, so that a command that was held up says it as any other does.
             if waiting_for is not None and waited >= NOTICE_AFTER_S:
                 complain(waiting_for())
                 waiting_for = None
+            if timeout_s is not None and waited >= timeout_s:
+                return False
             self.spin_once()
         return True
 
@@ -200,7 +205,11 @@ def open_session(name: str | None = None, use_sim_time: bool = False) -> Iterato
                 with _signals_handled(session):
                     yield session
         finally:
+            error = sys.exc_info()[1]
+            limit = DestructionLimit()
+            limit.start(0 if error is None else getattr(error, "exit_code", 1))
             node.destroy_node()
+            limit.cancel()
     except NameValidationException as error:
         reason, quoted_name, *_ = str(error).splitlines()
         raise CommandUsageError(f"{quoted_name.strip()}: {reason.rstrip(':')}") from error

@@ -4,13 +4,14 @@ import argparse
 import math
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from arm_cli.arguments import Argument, Flag, positive_number, verb
 from arm_cli.errors import ArmCliError, StoppedError
-from arm_cli.output import complain, say
+from arm_cli.output import complain, print_json, say
 from arm_cli.ros.connection import connect
 from arm_cli.sim.simulation import NAMESPACE, ask_simulation
 
@@ -23,6 +24,8 @@ MAX_ARGUMENTS = 120
 """Characters of an input's arguments that are printed."""
 BLOBS = ("model", "saved")
 """Arguments in a binary form, which are not printed."""
+PROGRESS_S = 0.25
+"""Wall time between two lines of --json."""
 _REFUSED = " (refused)"
 
 
@@ -83,9 +86,18 @@ def _say_recorded(path: Path) -> None:
         default=1.0,
         help="simulated seconds per second, with --publish (default: 1)",
     ),
+    Argument(
+        "--bag",
+        metavar="DIR",
+        type=Path,
+        help="write clock, joint states, transforms and shapes as a bag",
+    ),
+    Flag("--json", help="print a line of JSON now and then, and what was found as the last one"),
 )
 def replay(options: argparse.Namespace) -> int:
     """Run a recording again; return 1 unless every control period is equal."""
+    if options.bag and options.publish:
+        raise ArmCliError("--bag and --publish: a replay is either written or published")
     with _sentences():
         from arm_gazebo.recording.replay import Replay
         from arm_gazebo.recording.run_file import RunFile
@@ -99,7 +111,12 @@ def replay(options: argparse.Namespace) -> int:
                 "the same machine and versions only"
             )
         run = Replay(file)
-        result = _published(run, options) if options.publish else _replayed(run, options)
+        if options.publish:
+            result = _published(run, options)
+        elif options.bag:
+            result = _written(run, options)
+        else:
+            result = _replayed(run, options)
     return 1 if result.difference is not None or not result.periods else 0
 
 
@@ -111,16 +128,53 @@ def _replayed(
     def say_input(item: "RecordedInput") -> None:
         where = " ".join(filter(None, (item.controller, item.method)))
         words = " ".join(filter(None, (where, _brief(item))))
-        say(f"{run.simulation.time_s:.3f} s: {words}{_REFUSED * item.raised}")
+        if options.json:
+            print_json({"time_s": run.simulation.time_s, "input": words, "refused": item.raised})
+        else:
+            say(f"{run.simulation.time_s:.3f} s: {words}{_REFUSED * item.raised}")
+
+    progress = _Progress(run) if options.json else None
+
+    def after_period() -> None:
+        show()
+        if progress is not None:
+            progress.tell()
 
     before_input = say_input if options.inputs else _ignore
     until_s = math.inf if options.until is None else options.until
     began_s = time.monotonic()
-    result = run.run(until_s, show, before_input)
-    _say_result(options.file, result, time.monotonic() - began_s)
+    result = run.run(until_s, after_period, before_input)
+    wall_s = time.monotonic() - began_s
+    if progress is not None:
+        print_json({"result": {**asdict(result), "wall_s": wall_s, **progress.lengths}})
+        return result
+    _say_result(options.file, result, wall_s)
     if options.until is not None:
         _say_joints(run)
     return result
+
+
+class _Progress:
+    """Tells in JSON how far a replay is, at once and every PROGRESS_S.
+
+    Attributes:
+        lengths: length of the recording and of a period.
+    """
+
+    def __init__(self, run: "Replay") -> None:
+        self._run = run
+        self.lengths = {
+            "of_periods": run.file.count_periods(),
+            "period_s": run.simulation.timing.period_s,
+        }
+        self._told_s = -math.inf
+        self.tell()
+
+    def tell(self) -> None:
+        now_s = time.monotonic()
+        if now_s - self._told_s >= PROGRESS_S:
+            self._told_s = now_s
+            print_json({"periods": self._run.periods, **self.lengths})
 
 
 def _published(run: "Replay", options: argparse.Namespace) -> "ReplayResult":
@@ -133,6 +187,14 @@ def _published(run: "Replay", options: argparse.Namespace) -> "ReplayResult":
         with suppress(StoppedError):
             player.hold()
     return result
+
+
+def _written(run: "Replay", options: argparse.Namespace) -> "ReplayResult":
+    """Run and compare, and write what was equal as a bag."""
+    from arm_cli.ros.run_bag import RunBag
+
+    with closing(RunBag(options.bag, run)) as bag:
+        return _replayed(run, options, bag.show)
 
 
 def _ignore(_item: "RecordedInput") -> None:

@@ -17,11 +17,11 @@ from arm_cli.arguments import (
 )
 from arm_cli.errors import CommandUsageError, UnansweredError
 from arm_cli.interface_types import InterfaceIndex, load_class
-from arm_cli.messages.fields import FILTER, message_filter
 from arm_cli.output import print_json, say, say_document
 from arm_cli.qos_options import qos_arguments, qos_choice
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
+from arm_cli.topic.message_parts import FILTER, message_filter
 from arm_cli.word_completion import message_names
 
 TRUNCATE_LENGTH = 128
@@ -89,8 +89,8 @@ def echo(options: argparse.Namespace) -> None:
 
 
 def _printer(options: argparse.Namespace) -> "MessagePrinter":
-    from arm_cli.messages.fields import FieldPath
-    from arm_cli.messages.text import Abridgement
+    from arm_cli.topic.message_parts import FieldPath
+    from arm_node.messages.text import Abridgement
 
     if options.once and options.times is not None:
         raise CommandUsageError("--once and --times exclude each other")
@@ -151,7 +151,7 @@ class MessagePrinter:
             self.count += 1
 
     def _print(self, part: Any, info: dict[str, Any]) -> None:
-        from arm_cli.messages.text import is_message, to_csv, to_plain, to_yaml
+        from arm_node.messages.text import is_message, to_csv, to_plain, to_yaml
 
         if self.style == "json":
             plain = to_plain(part, self.abridgement)

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from arm_cli.arguments import Argument, Flag, positive_whole_number, verb
 from arm_cli.errors import MessageError
-from arm_cli.messages.fields import FILTER, message_filter
 from arm_cli.output import complain, say, say_document
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
+from arm_cli.topic.message_parts import FILTER, message_filter
 
 if TYPE_CHECKING:
     from arm_cli.ros.session import CommandSession

@@ -25,12 +25,13 @@ from arm_cli.qos_options import qos_arguments, qos_choice
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_cli.word_completion import message_names
+from arm_node.messages.errors import MessageValueError
 from arm_node.names import describe_known
 from arm_node.user_file import read_text
 
 if TYPE_CHECKING:
-    from arm_cli.messages.filling import FilledMessage
     from arm_cli.ros.session import CommandSession
+    from arm_node.messages.filling import FilledMessage
 
 KEEP_ALIVE_S = 0.1
 AFTER_MATCH_S = 0.4
@@ -119,7 +120,7 @@ def pub(options: argparse.Namespace) -> None:
 
 def _messages(options: argparse.Namespace, type_: InterfaceType) -> list["FilledMessage"]:
     """Return the messages to publish: one message, or those of a file."""
-    from arm_cli.messages.filling import fill_message, read_yaml
+    from arm_node.messages.filling import fill_message, read_yaml
 
     given = [bool(options.values), options.stdin, options.yaml_file is not None]
     if sum(given) > 1:
@@ -134,7 +135,7 @@ def _messages(options: argparse.Namespace, type_: InterfaceType) -> list["Filled
 
 
 def _messages_of_file(path: str, class_: type, type_name: str) -> list["FilledMessage"]:
-    from arm_cli.messages.filling import fill_message, read_yaml_documents
+    from arm_node.messages.filling import fill_message, read_yaml_documents
 
     try:
         text = read_text(path)
@@ -142,7 +143,7 @@ def _messages_of_file(path: str, class_: type, type_name: str) -> list["FilledMe
         raise NoSuchNameError(f"--yaml-file {path}: {error}") from error
     try:
         documents = read_yaml_documents(text, type_name)
-    except MessageError as error:
+    except MessageValueError as error:
         raise MessageError(f"--yaml-file {path}: {error}") from error
     if not documents:
         raise MessageError(f"--yaml-file {path}: the file holds no message")
@@ -151,7 +152,7 @@ def _messages_of_file(path: str, class_: type, type_name: str) -> list["FilledMe
         place = f"--yaml-file {path}: message {number}: "
         try:
             messages.append(fill_message(class_(), values))
-        except MessageError as error:
+        except MessageValueError as error:
             raise MessageError(f"{place}{error}") from error
         _say_notes(messages[-1], place)
     return messages

@@ -10,9 +10,9 @@ from std_msgs.msg import Byte, String
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from arm_cli.errors import CommandUsageError, MessageError
-from arm_cli.messages.fields import FieldPath, message_filter
-from arm_cli.messages.text import Abridgement, to_csv, to_plain, to_yaml
 from arm_cli.output import print_json
+from arm_cli.topic.message_parts import FieldPath, message_filter
+from arm_node.messages.text import Abridgement, to_csv, to_plain, to_yaml
 
 STATE = JointState(name=["j0", "j1"], position=[0.5, 1e-20])
 

@@ -1,1 +1,0 @@
-"""Converts messages to text and text to messages."""
