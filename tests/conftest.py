@@ -3,9 +3,10 @@
 import atexit
 import os
 import signal
+import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from contextlib import ExitStack
 from functools import cache
 
@@ -13,6 +14,8 @@ import pytest
 from hypothesis import settings
 
 from arm_node.ros_domain import domain_of_its_own
+from arm_node.workarounds.local_profile import profile_variable
+from arm_node.workarounds.ports import remove_torn_ports
 from arm_node.workarounds.switch import is_off_by_hand
 
 # How long an example takes says more about the machine than about the code. The same examples each
@@ -29,7 +32,7 @@ DISCOVERY_OVER_TRANSPORTS = """\
 </dds>
 """
 
-DDS_SETTINGS = ("FASTRTPS_DEFAULT_PROFILES_FILE", "ROS_AUTOMATIC_DISCOVERY_RANGE")
+DDS_SETTINGS = (profile_variable(), "ROS_AUTOMATIC_DISCOVERY_RANGE")
 
 _held_domain = ExitStack()
 atexit.register(_held_domain.close)
@@ -42,9 +45,10 @@ def pytest_configure(config: pytest.Config) -> None:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
     signal.signal(signal.SIGQUIT, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    # Each worker of pytest-xdist takes a domain; it would inherit one from the process above it.
+    # Each worker of pytest-xdist takes a domain, though the user has set one: two would meet in it.
     is_above_workers = getattr(config.option, "dist", "no") != "no"
-    if "ROS_DOMAIN_ID" not in os.environ and not is_above_workers:
+    is_worker = hasattr(config, "workerinput")
+    if is_worker or ("ROS_DOMAIN_ID" not in os.environ and not is_above_workers):
         os.environ["ROS_DOMAIN_ID"] = str(_lock_a_domain())
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
@@ -59,26 +63,48 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Let workers begin with the slow files, then those that start processes.
 
     Each has small ones left in the end: one worker would else be idle while another one does the
-    last long file.
+    last long file. Files with a browser are far from each other: three at once, each with its own
+    launch, take all that two cores have before a test has done anything.
     """
-    if hasattr(config, "workerinput"):
-        slow, ros = (
-            {item.path for item in items if item.get_closest_marker(mark)}
-            for mark in ("slow", "ros")
-        )
-        items.sort(key=lambda item: (item.path not in slow, item.path not in ros))
+    if not hasattr(config, "workerinput"):
+        return
+    slow, ros = (
+        {item.path for item in items if item.get_closest_marker(mark)} for mark in ("slow", "ros")
+    )
+    shown = {item.path: 0.0 for item in items if "browser" in getattr(item, "fixturenames", ())}
+    others = [path for path in dict.fromkeys(i.path for i in items) if path in ros - shown.keys()]
+    places = {path: float(place) for place, path in enumerate(others)}
+    places |= {path: place * len(others) / len(shown) for place, path in enumerate(shown)}
+    items.sort(
+        key=lambda item: (item.path not in slow, item.path not in ros, places.get(item.path, 0.0))
+    )
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    call: pytest.CallInfo[None],
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Show what a failed program said."""
+    report = yield
+    error = call.excinfo.value if call.excinfo else None
+    if isinstance(error, subprocess.CalledProcessError | subprocess.TimeoutExpired):
+        for name in ("stdout", "stderr"):
+            report.sections.append((f"{name} of the program", f"{getattr(error, name)}"))
+    return report
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Skip tests of what is switched off; let participants of this process find each other.
 
-    They do so as those of several processes do.
+    They do so as those of several processes do. What a test that killed a program has left is
+    removed, because any program of the next one would hang at it.
     """
     for mark in item.iter_markers("workaround"):
         if is_off_by_hand(mark.args[0]):
             pytest.skip(f"ARM_WITHOUT switches {mark.args[0]} off")
     if item.get_closest_marker("ros") is not None:
+        remove_torn_ports()
         _discover_over_transports()
 
 
@@ -101,7 +127,7 @@ def _discover_over_transports() -> None:
     ):
         profile.write(DISCOVERY_OVER_TRANSPORTS)
         profile.flush()
-        m.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", profile.name)
+        m.setenv(profile_variable(), profile.name)
         context = Context()
         rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
         rclpy.create_node("first", context=context).destroy_node()

@@ -9,15 +9,17 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import psutil
 import pytest
+from forked import popen
 
 from arm_sim.bench.processes import LoggedProcess
 
 TIMEOUT_S = 100.0
-END_TIMEOUT_S = 20.0
+END_TIMEOUT_S = 60.0
 ESCAPES = re.compile("\x1b\\[[0-9;]*m")
 
 
@@ -91,9 +93,10 @@ class Program(LoggedProcess):
                     pytest.fail(f"{self.name}: no {what}:\n" + "\n".join(self._lines))
                 self._changed.wait(left_s)
 
-    def processes(self) -> list[psutil.Process]:
-        """All processes below it."""
-        return psutil.Process(self.process.pid).children(recursive=True)
+    def processes(self, *words: str) -> list[psutil.Process]:
+        """All processes below it, or those whose command line contains one of these words."""
+        below = psutil.Process(self.process.pid).children(recursive=True)
+        return [one for one in below if not words or any(word in _command(one) for word in words)]
 
     def wait(self, timeout_s: float = TIMEOUT_S) -> int:
         """Wait for its end; return the exit code."""
@@ -134,3 +137,17 @@ class Program(LoggedProcess):
         for pipe in (self.process.stdin, self.process.stdout):
             if pipe is not None:
                 pipe.close()
+
+
+def _command(process: psutil.Process) -> str:
+    """Return a process's command line, "" if it has ended meanwhile."""
+    with suppress(psutil.NoSuchProcess):
+        return " ".join(process.cmdline())
+    return ""
+
+
+class RosProgram(Program):
+    """A program of Python that begins with rclpy imported: see `forked`."""
+
+    def _start(self, command: Sequence[str], stdin: int) -> "subprocess.Popen[str]":
+        return popen(command, self.environment, stdin=stdin)

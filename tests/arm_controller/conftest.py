@@ -13,9 +13,10 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from forked import popen
 
 WAIT_TIMEOUT_S = 30.0
-END_TIMEOUT_S = 15.0
+END_TIMEOUT_S = 60.0
 JOINTS = ("j0", "j1", "j2", "j3")
 STATE_ORDER = ("j3", "j0", "j2", "j1")
 """Joint states come in any order; this one is no default."""
@@ -174,12 +175,11 @@ class Program:
     def __init__(self, name: str, arguments: list[str], log_folder: Path) -> None:
         self._lock = threading.Condition()
         self._output = ""
-        self.process = subprocess.Popen(
-            [Path(sys.executable).with_name(name), *arguments],
+        self.process = popen(
+            [sys.executable, Path(sys.executable).with_name(name), *arguments],
+            {**os.environ, "ROS_LOG_DIR": str(log_folder)},
             stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            env={**os.environ, "ROS_LOG_DIR": str(log_folder)},
+            text=False,
         )
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()

@@ -32,21 +32,19 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """Run a test that asks for `type_name` once for every recorded type."""
-    if "type_name" in metafunc.fixturenames:
-        metafunc.parametrize("type_name", sorted(EXPECTED_TYPES))
+    """Run a test that asks for `recorded` once for the recorded types of every package."""
+    if "recorded" in metafunc.fixturenames:
+        packages = sorted({name.split("/")[0] for name in EXPECTED_TYPES})
+        of = {
+            p: {n: r for n, r in EXPECTED_TYPES.items() if n.startswith(f"{p}/")} for p in packages
+        }
+        metafunc.parametrize("recorded", of.values(), ids=of)
 
 
 @pytest.fixture
 def expected_types() -> dict[str, dict[str, Any]]:
     """All recorded types by name, such as `tf2_msgs/msg/TFMessage`."""
     return EXPECTED_TYPES
-
-
-@pytest.fixture
-def expected(type_name: str) -> dict[str, Any]:
-    """What is recorded of one type: its hash and its parts."""
-    return EXPECTED_TYPES[type_name]
 
 
 @pytest.fixture

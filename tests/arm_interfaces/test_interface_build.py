@@ -75,6 +75,30 @@ def test_every_distribution_is_built_by_the_same_code_under_its_own_name(
     assert backend.samefile(DISTRIBUTIONS[0] / "interface_build" / "backend.py")
 
 
+@pytest.mark.parametrize(
+    ("chosen", "wheel"), [("", "ros-jazzy-"), ("jazzy", "ros-jazzy-"), ("kilted", "ros-kilted-")]
+)
+def test_ros_distro_chooses_the_wheels(
+    build_module: Any, monkeypatch: pytest.MonkeyPatch, chosen: str, wheel: str
+) -> None:
+    monkeypatch.setenv("ROS_DISTRO", chosen)
+    read_project = build_module("project").read_project
+    read_project.cache_clear()
+    wheels = [name for name in read_project().dependencies if name.startswith("ros-")]
+    assert len(wheels) == 2
+    assert all(name.startswith(wheel) for name in wheels)
+
+
+def test_a_distribution_without_wheels_is_refused_in_a_sentence(
+    build_module: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS_DISTRO", "kilt")
+    read_project = build_module("project").read_project
+    read_project.cache_clear()
+    with pytest.raises(SystemExit, match=r"ROS_DISTRO is 'kilt', but .* for jazzy or kilted only"):
+        read_project()
+
+
 class RecordedBuild:
     """A build whose steps write their names to a file."""
 

@@ -1,6 +1,6 @@
 """Every class has the recorded fields and constants, and survives the way over the wire."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -9,11 +9,24 @@ from rclpy.serialization import deserialize_message, serialize_message
 PYTHON_NAMES = {"bool": "boolean", "byte": "octet", "float32": "float", "float64": "double"}
 
 
-def message_parts(cls: type, expected: dict[str, Any]) -> Iterator[tuple[type, dict[str, Any]]]:
-    """Pair the class of a message, or the classes inside a service or action, with its record."""
-    for part, record in expected.items():
-        if part != "hash":
-            yield cls if part == "Message" else getattr(cls, part), record
+Recorded = dict[str, dict[str, Any]]
+Parts = list[tuple[str, type, dict[str, Any]]]
+
+
+@pytest.fixture
+def parts(recorded: Recorded, load_type: Callable[[str], type]) -> Parts:
+    """Name the messages of a package, those inside services and actions too, with their record."""
+    return [
+        (
+            f"{type_name}.{part}",
+            cls if part == "Message" else getattr(cls, part),
+            record,
+        )
+        for type_name, of in recorded.items()
+        for cls in (load_type(type_name),)
+        for part, record in of.items()
+        if part != "hash"
+    ]
 
 
 def python_field_type(field_type: str, package: str) -> str:
@@ -25,42 +38,42 @@ def python_field_type(field_type: str, package: str) -> str:
     return PYTHON_NAMES.get(field_type, field_type)
 
 
-def test_fields_are_in_order(
-    type_name: str, expected: dict[str, Any], load_type: Callable[[str], type]
-) -> None:
-    package = type_name.split("/")[0]
-    for cls, record in message_parts(load_type(type_name), expected):
-        wanted = {
-            name: python_field_type(field_type, package)
-            for name, field_type in record.get("fields", {}).items()
-        }
-        found = cls.get_fields_and_field_types()
-        assert list(found.items()) == list(wanted.items())
+def test_fields_are_in_order(parts: Parts) -> None:
+    wanted = {
+        name: [
+            (field, python_field_type(kind, name.split("/")[0]))
+            for field, kind in record.get("fields", {}).items()
+        ]
+        for name, _, record in parts
+    }
+    found = {name: list(cls.get_fields_and_field_types().items()) for name, cls, _ in parts}
+    assert found == wanted
 
 
-def test_instance_has_every_field(
-    type_name: str, expected: dict[str, Any], load_type: Callable[[str], type]
-) -> None:
-    for cls, record in message_parts(load_type(type_name), expected):
+def test_instances_have_every_field(parts: Parts) -> None:
+    missing = [
+        f"{name}.{field}"
+        for name, cls, record in parts
+        for message in (cls(),)
+        for field in record.get("fields", {})
+        if getattr(message, field, None) is None
+    ]
+    assert missing == []
+
+
+def test_constants_have_their_values(parts: Parts) -> None:
+    wanted = {name: record.get("constants", {}) for name, _, record in parts}
+    found = {
+        name: {constant: _number(getattr(cls, constant)) for constant in wanted[name]}
+        for name, cls, _ in parts
+    }
+    assert found == wanted
+
+
+def test_default_messages_survive_serialisation(parts: Parts) -> None:
+    for name, cls, _ in parts:
         message = cls()
-        for name in record.get("fields", {}):
-            assert getattr(message, name) is not None
-
-
-def test_constants_have_their_values(
-    type_name: str, expected: dict[str, Any], load_type: Callable[[str], type]
-) -> None:
-    for cls, record in message_parts(load_type(type_name), expected):
-        constants = record.get("constants", {})
-        assert {name: _number(getattr(cls, name)) for name in constants} == constants
-
-
-def test_default_message_survives_serialisation(
-    type_name: str, expected: dict[str, Any], load_type: Callable[[str], type]
-) -> None:
-    for cls, _ in message_parts(load_type(type_name), expected):
-        message = cls()
-        assert deserialize_message(serialize_message(message), cls) == message
+        assert deserialize_message(serialize_message(message), cls) == message, name
 
 
 def test_a_motion_primitive_is_of_unknown_type_at_first(load_type: Callable[[str], type]) -> None:

@@ -28,8 +28,9 @@ def compiled_hash(type_name: str) -> str:
     return f"RIHS{type_hash.version:02d}_{bytes(type_hash.value).hex()}"
 
 
-def test_compiled_hash_is_the_recorded_one(type_name: str, expected: dict[str, Any]) -> None:
-    assert compiled_hash(type_name) == expected["hash"]
+def test_compiled_hashes_are_the_recorded_ones(recorded: dict[str, dict[str, Any]]) -> None:
+    hashes = {name: record["hash"] for name, record in recorded.items()}
+    assert {name: compiled_hash(name) for name in recorded} == hashes
 
 
 @pytest.mark.ros

@@ -13,6 +13,9 @@ from pathlib import Path
 
 TIMEOUT_S = 150.0
 """For a line: a busy machine simulates slower than time passes."""
+END_TIMEOUT_S = 20.0
+FOREIGN, NOTICE = "[RTPS", "waiting for "
+"""In Fast DDS's own errors, and before what a command says that finds things late."""
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 ANYTHING = "..."
 INTERRUPT = "^C"
@@ -42,17 +45,32 @@ def comparable(output: str, exact: bool) -> str:
     return "".join(f"{_comparable(line, exact)}\n" for line in output.splitlines() if line.strip())
 
 
+def as_in_peace(output: str, lines: list[str] | tuple[str, ...]) -> str:
+    """Return output without what only a busy machine lets commands say, if no line shows it."""
+    tells = any(line.startswith(NOTICE) for line in lines)
+    return "".join(
+        line
+        for line in output.splitlines(keepends=True)
+        if FOREIGN not in line and (tells or not line.startswith(NOTICE))
+    )
+
+
 def _comparable(line: str, exact: bool) -> str:
     return line if exact else re.sub(r"[ \t]+", " ", NUMBER.sub("#", line))
+
+
+def environment_of_reader() -> dict[str, str]:
+    """Return the environment in which a reader types commands."""
+    search = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    environment = {**os.environ, "PATH": search, "PYTHONUNBUFFERED": "1", "TERM": "dumb"}
+    environment.pop("PYTEST_ADDOPTS", None)  # Of this run, not of those that pages show.
+    return environment
 
 
 class Running:
     """A command that has been started; what it prints is collected."""
 
     def __init__(self, line: str, folder: Path, terminal: bool = False) -> None:
-        search = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-        environment = {**os.environ, "PATH": search, "PYTHONUNBUFFERED": "1", "TERM": "dumb"}
-        environment.pop("PYTEST_ADDOPTS", None)  # Of this run, not of those that pages show.
         near, far = pty.openpty() if terminal else os.pipe()
         self._near = near
         writer = far
@@ -61,7 +79,7 @@ class Running:
             stdin=far if terminal else subprocess.DEVNULL,
             stdout=writer,
             stderr=writer,
-            env=environment,
+            env=environment_of_reader(),
             cwd=folder,
             start_new_session=True,
         )
@@ -69,10 +87,12 @@ class Running:
         self._output = b""
         self._changed = threading.Condition()
         self._ended = False
-        threading.Thread(target=self._read, daemon=True).start()
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
 
     def _read(self) -> None:
-        while True:
+        """Collect, and close the end that it reads: a later command's might get its number."""
+        while not self._ended:
             try:
                 more = os.read(self._near, 65536)
             except OSError:  # a terminal whose other side has closed
@@ -81,8 +101,7 @@ class Running:
                 self._output += more
                 self._ended = not more
                 self._changed.notify_all()
-            if not more:
-                return
+        os.close(self._near)
 
     @property
     def output(self) -> str:
@@ -96,7 +115,11 @@ class Running:
     def wait_until_shown(self, lines: list[str], exact: bool = False) -> None:
         """Block until these lines have been printed, with anything behind them."""
         wanted = pattern([*lines, ANYTHING], exact)
-        self.wait_for(lambda output: bool(wanted.fullmatch(comparable(output, exact))), lines)
+
+        def is_shown(output: str) -> bool:
+            return bool(wanted.fullmatch(comparable(as_in_peace(output, lines), exact)))
+
+        self.wait_for(is_shown, lines)
 
     def wait_for(self, is_right: Callable[[str], bool], what: object) -> None:
         """Block until the output so far is right."""
@@ -124,11 +147,11 @@ class Running:
         if self.process.poll() is None:
             self.interrupt()
             try:
-                self.process.wait(20.0)
+                self.process.wait(END_TIMEOUT_S)
             except subprocess.TimeoutExpired:
                 os.killpg(self.process.pid, signal.SIGKILL)
-                self.process.wait(10.0)
-        os.close(self._near)
+                self.process.wait(END_TIMEOUT_S)
+        self._reader.join(END_TIMEOUT_S)
 
 
 class Background:

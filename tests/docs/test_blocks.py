@@ -9,7 +9,7 @@ import pytest
 import yaml
 from blocks import PAGES, Block, Command, blocks_of, commands_of
 from lxml import etree
-from shell import ANYTHING, INTERRUPT, Background, Running, comparable, pattern
+from shell import ANYTHING, INTERRUPT, Background, Running, as_in_peace, comparable, pattern
 
 LANGUAGES = {"console", "bash", "python", "yaml", "xml", "toml", "text", "dockerfile"}
 
@@ -57,7 +57,8 @@ def run(command: Command, block: Block, folder: Path, background: Background) ->
     lines = [line for line in command.output if line != INTERRUPT]
     if how != "print":
         wanted = pattern(lines or [ANYTHING], how == "exact")
-        assert wanted.fullmatch(comparable(output, how == "exact")), where
+        said = comparable(as_in_peace(output, lines), how == "exact")
+        assert wanted.fullmatch(said), where
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
@@ -95,7 +96,8 @@ def listed(what: str, folder: Path) -> dict[str, str]:
     running = Running(f"arm {what} list -t", folder)
     assert running.wait() == 0
     running.close()
-    lines = (line.replace("[", "").rstrip("]").split(" ") for line in running.output.splitlines())
+    names = [line for line in running.output.splitlines() if line.startswith("/")]
+    lines = (line.replace("[", "").rstrip("]").split(" ") for line in names)
     return {line[0]: line[1] for line in lines}
 
 

@@ -225,6 +225,14 @@ def _check_sentence(error: Exception) -> None:
     assert str(error).strip(), f"{type(error).__name__} says nothing"
 
 
+def _request_target() -> Target:
+    """Return the target of requests to move_group, whose messages only it imports."""
+    import move_group_requests
+
+    desk = move_group_requests.Desk()
+    return Target(move_group_requests.make, lambda _, name, data: desk.answer(name, data))
+
+
 TARGETS: dict[str, Callable[[], Target]] = {
     "urdf": lambda: Target(_xml("a.urdf", seeds.URDF), _read_urdf),
     "xacro": lambda: Target(_xml("a.xacro", seeds.XACRO), _read_xacro),
@@ -242,4 +250,5 @@ TARGETS: dict[str, Callable[[], Target]] = {
         lambda chance: ("a.mcap", mutation.mutant_of_bytes(seeds.bags(), chance)), _read_bag
     ),
     "arguments": lambda: Target(_text("", *seeds.ARGUMENTS), _read_arguments),
+    "requests": _request_target,
 }

@@ -1,4 +1,7 @@
-"""Each reader takes 200 broken inputs: a result or a sentence, no other error, no end of all."""
+"""Each reader takes 200 broken inputs: a result or a sentence, no other error, no end of all.
+
+Requests to `move_group` are inputs like files; the campaign of 10,000 is `fuzz.py requests`.
+"""
 
 import json
 import subprocess
@@ -10,7 +13,7 @@ import pytest
 FUZZ = Path(__file__).with_name("fuzz.py")
 TARGETS = (
     *("urdf", "xacro", "sdf", "mjcf", "meshes", "yaml", "mcap", "arguments"),
-    *("srdf", "planning"),
+    *("srdf", "planning", "requests"),
 )
 INPUTS = 200
 MOST_MB = 1000

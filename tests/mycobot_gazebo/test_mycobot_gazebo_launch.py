@@ -88,7 +88,8 @@ def test_the_simulation_s_own_choices_are_passed_on():
     assert chosen["real_time_factor"] == 3
     shown = processes(viewer="true", viewer_port="8090")
     assert {"arm_viewer_node"} == set(shown) - set(processes())
-    assert parameters_of(shown["arm_viewer_node"])["/**"]["port"] == 8090
+    page = parameters_of(shown["arm_viewer_node"])["/**"]
+    assert (page["port"], page["host"], page["read_only"]) == (8090, "127.0.0.1", False)
 
 
 @pytest.mark.parametrize("given", [{}, {"prefix": "left_"}])

@@ -3,10 +3,13 @@
 import re
 import time
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
+from threading import Timer
 
+from forked import popen, words_of_arm
 from originals_table import COURSE, INTERRUPT, Row, Step, read_parts
-from shell import TIMEOUT_S, Running, comparable, pattern
+from shell import TIMEOUT_S, Running, comparable, environment_of_reader, pattern
 
 ROWS = tuple(row for part in read_parts() for row in part.rows)
 ARRIVAL = "all(abs(dict(zip(m.name, m.position))[n] - q) < {within} for n, q in {wanted})"
@@ -98,6 +101,14 @@ class Walk:
             assert time.monotonic() < deadline, f"{what}:\n{output}"
 
     def _ended(self, line: str) -> tuple[int, str]:
+        if words := words_of_arm(line):
+            program = popen(words, environment_of_reader(), cwd=self._folder)
+            overdue = Timer(TIMEOUT_S, program.kill)
+            overdue.start()
+            with closing(program.stdout):
+                output = program.stdout.read()
+            overdue.cancel()
+            return program.wait(), output
         running = Running(line, self._folder)
         try:
             return running.wait(), running.output

@@ -11,6 +11,7 @@ from importlib.metadata import PackageNotFoundError, packages_distributions, req
 from pathlib import Path
 
 import pytest
+from declared_dependencies import DEPENDENCIES, WHEELS
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
@@ -27,7 +28,7 @@ READS_MESHES = {"pycollada", "networkx"}
 """What trimesh imports for .dae and for .3mf; nothing else imports them."""
 HOSTS = {"pytest"}
 """What loads a plugin of the suite; nobody imports the plugin where it is not installed."""
-DECLARED = {canonicalize_name(Requirement(r).name) for r in PROJECT["project"]["dependencies"]}
+DECLARED = {canonicalize_name(Requirement(r).name) for r in DEPENDENCIES}
 EXTRAS = PROJECT["project"]["optional-dependencies"]
 OPTIONAL = {
     "arm_gazebo/arm_gazebo/batch/gpu": ["gpu"],
@@ -37,12 +38,12 @@ OPTIONAL = {
     "arm_sim/arm_sim/sweep": ["sweep", "ray"],
 }
 """Parts of the product that need extras, which no other part imports."""
-PEERS = {"pytracik", "toppra"}
+PEERS = {"pytracik", "scservo_sdk", "toppra"}
 """What benchmarks compare the suite with; each script says how to install it."""
 BRINGS = {"gpu": {"gymnasium"}}
 """What an extra installs for other parts of the product that need it, too."""
-DISTRIBUTIONS = {"warp": "warp-lang"}
-"""The distributions of modules that tests do without, where they have another name."""
+DISTRIBUTIONS = {"warp": "warp-lang", "griffe": "griffelib"}
+"""The distributions of modules that the extra `test` does not bring, where the name differs."""
 RUN = Path(__file__).with_name("run_without.py")
 
 
@@ -160,7 +161,7 @@ def test_the_manual_says_what_each_dependency_is_for():
     manual = (ROOT / "docs/start/install.md").read_text()
     rows = [line.split("|")[1] for line in manual.splitlines() if line.startswith("| ")]
     named = {word.strip(" ,").partition("[")[0] for row in rows for word in row.split(",")}
-    declared = {Requirement(r).name for r in PROJECT["project"]["dependencies"]}
+    declared = {Requirement(r).name for r in DEPENDENCIES}
     assert declared - named == set()
 
 
@@ -172,16 +173,15 @@ def test_an_extra_names_the_interfaces_of_this_checkout(extra: str, folder: str)
 
 
 def test_the_interfaces_are_bound_to_the_same_wheels_as_the_suite():
-    bound = {need for need in PROJECT["project"]["dependencies"] if need.startswith("ros-")}
     for folder in INTERFACES.values():
-        needs = tomllib.loads((ROOT / folder / "pyproject.toml").read_text())["project"]
-        assert bound <= set(needs["dependencies"])
+        table = tomllib.loads((ROOT / folder / "pyproject.toml").read_text())
+        assert table["tool"]["interface_build"]["ros"] == WHEELS
 
 
 @pytest.fixture(scope="module")
 def hidden_modules() -> list[str]:
     """The modules of this environment that nobody gets who installs the suite alone."""
-    installed = closure(PROJECT["project"]["dependencies"])
+    installed = closure(DEPENDENCIES)
     return sorted(
         module
         for module, names in providers().items()

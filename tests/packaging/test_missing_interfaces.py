@@ -37,6 +37,7 @@ ARGUMENTS = {
     "unspawner": ["position_controller"],
     "ros_gz_create": ["-topic", "robot_description"],
     "hardware_spawner": ["HardwareInterface", "--activate"],
+    "mtc_demo": ["cartesian"],
 }
 SUPERVISOR = "launch_py"
 """Does not need the interfaces itself; it passes on what its processes print."""

@@ -145,7 +145,8 @@ def test_its_topic_moves_the_joints_of_a_running_manager(checkout, tmp_path):
             *("arm_cli", "topic", "pub", "--once", "/position_controller/target"),
             *("std_msgs/msg/Float64", "data: 0.5"),
         )
-        echo = ("topic", "echo", "/joint_states", "--once", "--field", "position")
+        moved = ("--filter", "list(m) == [0.5] * 4")
+        echo = ("topic", "echo", "/joint_states", "--once", "--field", "position", *moved)
         assert "[0.5, 0.5, 0.5, 0.5]" in checkout.run_module("arm_cli", *echo)
     finally:
         launch.terminate()

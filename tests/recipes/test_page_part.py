@@ -73,8 +73,9 @@ import zstandard
 from rclpy.executors import SingleThreadedExecutor
 from sensor_msgs.msg import BatteryState
 from websockets.sync.client import connect
+from arm_viewer.access import LOCAL_HOST
 from arm_viewer.page import page_running
-from arm_viewer.page_server import HOST, page_server
+from arm_viewer.page_server import page_server
 from arm_viewer.ros.viewer import Viewer
 
 LENGTHS = 16
@@ -89,9 +90,10 @@ executor.add_node(robot)
 spinning = threading.Thread(target=executor.spin, daemon=True)
 spinning.start()
 with page_server(0) as server, page_running(server, viewer.latest, viewer.send):
-    address = f"ws://{HOST}:{server.get_port()}"
+    address = f"ws://{LOCAL_HOST}:{server.get_port()}"
     protocol = f"viser-v{viser.__version__}"
-    with connect(address, subprotocols=[protocol], origin=server.url, max_size=None) as page:
+    wanted = {"subprotocols": [protocol], "origin": server.url, "open_timeout": 60.0}
+    with connect(address, max_size=None, **wanted) as page:
         said = b""
         while b"Battery: 42%" not in said:
             message = page.recv(timeout=60.0)

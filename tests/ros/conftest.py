@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ import yaml
 from programs import Program
 
 WAIT_TIMEOUT_S = 60.0
-QUEUE_DEPTH = 100
+QUEUE_DEPTH = 1000
 """Of a subscription: with ROS's usual 10, a test that a busy machine holds up for a tenth of a
 second would lose messages of a 100 Hz topic."""
 
@@ -88,6 +89,15 @@ class Collector:
         self.messages: list = []
         self.arrivals_s: list[float] = []
         self.changed = threading.Condition()
+        self._cleared_ns = 0
+
+    def take(self, message: object, information: dict[str, int]) -> None:
+        """Keep a message, unless it had arrived before the last `clear`.
+
+        On a busy machine the executor may take a message long after it has arrived.
+        """
+        if information["received_timestamp"] >= self._cleared_ns:
+            self(message)
 
     def __call__(self, message: object) -> None:
         with self.changed:
@@ -96,8 +106,9 @@ class Collector:
             self.changed.notify_all()
 
     def clear(self) -> None:
-        """Discard the messages so far."""
+        """Discard the messages so far, and those that have arrived but are not taken yet."""
         with self.changed:
+            self._cleared_ns = time.time_ns()
             self.messages.clear()
             self.arrivals_s.clear()
 
@@ -148,6 +159,7 @@ class Client:
         )
         self.node = Node("test_client", context=self.context)
         self.executor = SingleThreadedExecutor(context=self.context)
+        self._actions: list[Any] = []
         self.executor.add_node(self.node)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._spin, daemon=True)
@@ -160,13 +172,16 @@ class Client:
     def subscribe(self, message_type: type, topic: str, qos: object = QUEUE_DEPTH) -> Collector:
         """Collect a topic's messages from now on."""
         collector = Collector()
-        self.node.create_subscription(message_type, topic, collector, qos)
+        self.node.create_subscription(message_type, topic, collector.take, qos)
         return collector
 
     def wait_until(
-        self, condition: Callable[[], object], what: str, timeout_s: float = WAIT_TIMEOUT_S
+        self, condition: Callable[[], object], what: object, timeout_s: float = WAIT_TIMEOUT_S
     ) -> object:
-        """Poll a condition of the ROS graph until it is true; return its value."""
+        """Poll a condition of the ROS graph until it is true; return its value.
+
+        `what` says in a failure what was waited for.
+        """
         deadline = time.monotonic() + timeout_s
         while True:
             value = condition()
@@ -194,25 +209,69 @@ class Client:
         self.be_known_to_server(client.service_name)
         return self.result_of(client.call_async(request), name, timeout_s)
 
+    def action(self, action_type: type, name: str, timeout_s: float = WAIT_TIMEOUT_S) -> Any:
+        """Return a client of an action whose server has discovered all of it."""
+        from rclpy.action import ActionClient
+
+        made = self.run(lambda: ActionClient(self.node, action_type, name), name)
+        self._actions.append(made)
+        self.wait_until(made.server_is_ready, f"the action {name}", timeout_s)
+        self.be_known_to_server(f"{name}/_action/send_goal")
+        return made
+
+    def send_goal(self, action: Any, goal: object, take_feedback: Any = None) -> Any:
+        """Send a goal; return the future of its result, None where it is rejected.
+
+        On the executor's thread: rclpy notes a request only after it has sent it, and what is
+        answered before that is thrown away.
+        """
+
+        async def send() -> Any:
+            handle = await action.send_goal_async(goal, take_feedback)
+            return handle.get_result_async() if handle.accepted else None
+
+        return self.run(send, "the answer to a goal")
+
     def be_known_to_readers(self, topic: str) -> None:
         """Block until the readers of a topic have discovered all endpoints of this node."""
         from arm_node.testing import DiscoveryCheck
 
-        self._complete(DiscoveryCheck(self.node, topic), topic)
+        self._complete(DiscoveryCheck(self.node, topic))
 
     def be_known_to_server(self, service: str) -> None:
         """Block until a service's server has discovered all endpoints of this node."""
         from arm_node.testing import DiscoveryCheck
 
-        self._complete(DiscoveryCheck.with_server(self.node, service), service)
+        self._complete(DiscoveryCheck.with_server(self.node, service))
 
-    def _complete(self, check: Any, name: str) -> None:
-        self.wait_until(lambda: check.complete, f"known to those behind {name}")
-        self.run(check.close, name)
+    def _complete(self, check: Any) -> None:
+        self.wait_until(lambda: check.complete, check)
+        self.run(check.close, "the end of a check of discovery")
 
     def run(self, function: Callable[[], object], what: str) -> Any:
         """Run a function on the executor's thread; return its result."""
         return self.result_of(self.executor.create_task(function), what)
+
+    @contextmanager
+    def tidied(self) -> "Iterator[Client]":
+        """Destroy in the end what the node has been given within this block."""
+        kinds = {
+            "timers": self.node.destroy_timer,
+            "clients": self.node.destroy_client,
+            "services": self.node.destroy_service,
+            "publishers": self.node.destroy_publisher,
+            "subscriptions": self.node.destroy_subscription,
+        }
+        before = {kind: list(getattr(self.node, kind)) for kind in kinds}
+        yield self
+
+        def destroy_new() -> None:
+            for kind, destroy in kinds.items():
+                for each in list(getattr(self.node, kind)):
+                    if each not in before[kind]:
+                        destroy(each)
+
+        self.run(destroy_new, "the node's end points")
 
     @staticmethod
     def collector() -> Collector:
@@ -231,7 +290,9 @@ class Client:
     def close(self) -> None:
         """End the executor, then the node, then the context."""
         self._stop.set()
-        self._thread.join(10.0)
+        self._thread.join(60.0)
+        for action in self._actions:
+            action.destroy()
         self.executor.shutdown()
         self.node.destroy_node()
         self.context.try_shutdown()

@@ -9,9 +9,7 @@ import pytest
 pytestmark = pytest.mark.ros
 
 
-def write_controllers(
-    folder: Path, update_rate: int = 100, joints: str = "[j0, j1, j2, j3]"
-) -> Path:
+def write_controllers(folder: Path, update_rate: int) -> Path:
     path = folder / "controllers.yaml"
     path.write_text(f"""\
 controller_manager:
@@ -23,7 +21,7 @@ controller_manager:
       type: position_controllers/JointGroupPositionController
 position_controller:
   ros__parameters:
-    joints: {joints}
+    joints: [j0, j1, j2, j3]
 """)
     return path
 
@@ -48,14 +46,13 @@ def test_the_arm_falls_without_position_hold(launch, client):
     assert abs(fallen[-1].position[1]) > 1.2
 
 
-def test_unclaimed_joints_hold_by_default(launch, client):
+def test_unclaimed_joints_hold_the_initial_pose_by_default(launch, client):
     from sensor_msgs.msg import JointState
 
-    launch(
-        "camera:=none", "spawn:=joint_state_broadcaster", "j1_pos:=0.5", "j2_pos:=0.5"
-    ).wait_until_ready()
+    pose = ("j1_pos:=0.5", "j2_pos:=0.5", "j3_pos:=1.0")
+    launch("camera:=none", "spawn:=joint_state_broadcaster", *pose).wait_until_ready()
     states = client.subscribe(JointState, "/joint_states").wait_for(200)
-    assert np.allclose([m.position for m in states], [0.0, 0.5, 0.5, 0.0], atol=0.005)
+    assert np.allclose([m.position for m in states], [0.0, 0.5, 0.5, 1.0], atol=0.01)
 
 
 def test_an_update_rate_that_no_step_divides_works(launch, client, tmp_path):
@@ -70,25 +67,13 @@ def test_an_update_rate_that_no_step_divides_works(launch, client, tmp_path):
     assert np.median(np.diff(stamps)) == pytest.approx(1 / rate_hz, rel=1e-3)
 
 
-def test_an_unknown_joint_in_the_controllers_file_is_reported(launch, tmp_path):
-    path = write_controllers(tmp_path, joints="[j0, j1, j2, j9]")
-    launched = launch("camera:=none", f"controllers:={path}")
-    line = launched.wait_for_line("j9/position")
-    assert "not available" in line or "not exist" in line
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["world:=/no/such/world.xml"], ["/no/such/world.xml", "empty", "objects"]),
         (["physics_step:=0.003"], ["0.003", "0.01"]),
-        (
-            ["controllers:=/no/such.yaml"],
-            ["launch: cannot read the controllers' file /no/such.yaml: No such file or directory"],
-        ),
         (["headless:=false"], ["DISPLAY is not set", "headless:=false"]),
         (["gz_args:=-r -v 1 kitchen.sdf"], ["'kitchen'", "empty", "objects"]),
-        (["gz_args:=-r objects.sdf", "world:=/no/such/lab.xml"], ["/no/such/lab.xml"]),
+        (["gz_args:=-r objects.sdf", "world:=/no/such/lab.xml"], ["/no/such/lab.xml", "empty"]),
     ],
 )
 def test_invalid_requests_are_refused_with_a_sentence(launch, arguments, words):
@@ -134,15 +119,3 @@ def test_rviz_opens_if_installed(launch, tmp_path):
     launched.wait_for_line("shows -d /my/lab.rviz --ros-args -p use_sim_time:=true")
     launched.wait_until_ready()
     assert launched.stop() == 0, launched.output
-
-
-def test_stopping_with_a_trajectory_controller_leaves_no_traceback(launch):
-    launched = launch(
-        "arm_gazebo",
-        "arm_world.launch.py",
-        "camera:=none",
-        "spawn:=joint_trajectory_controller",
-    )
-    launched.wait_until_ready()
-    assert launched.stop() == 0
-    assert "Traceback" not in launched.output

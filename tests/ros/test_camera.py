@@ -18,6 +18,7 @@ import pytest
 from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.camera.process import CameraProcess
 from arm_gazebo.sensors.camera import CameraSensor
+from launch_py.fast_dds.shared_memory import PREFIXES
 
 pytestmark = pytest.mark.ros
 
@@ -105,9 +106,7 @@ def segments_of(process: psutil.Process) -> set[Path]:
     """
     paths = (mapped.path for mapped in process.memory_maps())
     return {
-        Path(path)
-        for path in paths
-        if path.startswith("/dev/shm/fastrtps_") and "_port" not in path
+        Path(path) for path in paths if Path(path).name.startswith(PREFIXES) and "_port" not in path
     }
 
 
@@ -117,6 +116,18 @@ Simulate = Callable[..., Simulation]
 @pytest.fixture
 def simulate() -> Iterator[Simulate]:
     """Start a simulation with one camera, which ends with the test at the latest."""
+    yield from simulator()
+
+
+@pytest.fixture(scope="class")
+def simulation() -> Iterator[None]:
+    """A simulation with one camera for the tests of a class."""
+    for simulate in simulator():
+        simulate()
+        yield
+
+
+def simulator() -> Iterator[Simulate]:
     running: list[Simulation] = []
 
     def start(sensor: CameraSensor = SENSOR, environ: dict | None = None, **options) -> Simulation:
@@ -153,19 +164,55 @@ def red_centre(picture: np.ndarray) -> tuple[float, float]:
     return float(columns.mean()) + 0.5, float(rows.mean()) + 0.5
 
 
-def test_the_intrinsics_project_the_ball_to_its_pixels(simulate, client):
-    from sensor_msgs.msg import CameraInfo, Image
+@pytest.mark.usefixtures("simulation")
+class TestOneCamera:
+    def test_the_intrinsics_project_the_ball_to_its_pixels(self, client):
+        from sensor_msgs.msg import CameraInfo, Image
 
-    simulate()
-    images = client.subscribe(Image, "/videocamera")
-    infos = client.subscribe(CameraInfo, "/camera_info")
-    image, info = images.wait_for(1)[0], infos.wait_for(1)[0]
-    assert (image.width, image.height, image.step, image.encoding) == (320, 240, 960, "rgb8")
-    assert image.is_bigendian == 0
-    assert image.header.frame_id == info.header.frame_id == "camera_optical_frame"
-    # The ball is 0.3 m to the left, 0.2 m above and 2 m ahead.
-    u, v, w = np.reshape(info.p, (3, 4)) @ [-0.3, -0.2, 2.0, 1.0]
-    assert red_centre(pixels(image)) == pytest.approx((u / w, v / w), abs=1.0)
+        images = client.subscribe(Image, "/videocamera")
+        infos = client.subscribe(CameraInfo, "/camera_info")
+        image, info = images.wait_for(1)[0], infos.wait_for(1)[0]
+        assert (image.width, image.height, image.step, image.encoding) == (320, 240, 960, "rgb8")
+        assert image.is_bigendian == 0
+        assert image.header.frame_id == info.header.frame_id == "camera_optical_frame"
+        # The ball is 0.3 m to the left, 0.2 m above and 2 m ahead.
+        u, v, w = np.reshape(info.p, (3, 4)) @ [-0.3, -0.2, 2.0, 1.0]
+        assert red_centre(pixels(image)) == pytest.approx((u / w, v / w), abs=1.0)
+
+    def test_every_picture_has_a_camera_info_with_the_same_stamp_on_every_topic(self, client):
+        from sensor_msgs.msg import CameraInfo, Image
+
+        names = ("/camera_info", "/videocamera/camera_info")
+        topics = [client.subscribe(CameraInfo, name) for name in names]
+        images = client.subscribe(Image, "/camera/image_raw")
+        stamps = [stamp_s(image) for image in images.wait_for(10)]
+        for topic in topics:
+            infos = topic.wait_until(
+                lambda m: set(stamps[-3:]) <= {stamp_s(info) for info in m}, "infos of the pictures"
+            )
+            assert len({stamp_s(info) for info in infos}) == len(infos)
+
+    def test_stamps_are_those_of_the_ticks_at_which_frames_are_due(self, client):
+        from sensor_msgs.msg import CameraInfo
+
+        infos = client.subscribe(CameraInfo, "/camera_info").wait_for(10)
+        for info in infos:
+            time_s = stamp_s(info)
+            assert time_s * 100 == pytest.approx(round(time_s * 100), abs=1e-6)
+            assert (time_s * 30) % 1 < TICK_S * 30
+
+    def test_compressed_pictures_show_the_same_image(self, client):
+        import cv2
+        from sensor_msgs.msg import CompressedImage, Image
+
+        compressed = client.subscribe(CompressedImage, "/videocamera/compressed").wait_for(1)[0]
+        image = client.subscribe(Image, "/videocamera").wait_for(1)[0]
+        assert compressed.format == "rgb8; jpeg compressed bgr8"
+        assert compressed.header.frame_id == "camera_optical_frame"
+        decoded = cv2.imdecode(np.frombuffer(compressed.data, np.uint8), cv2.IMREAD_COLOR)
+        decoded = cv2.cvtColor(decoded, cv2.COLOR_BGR2RGB)
+        assert np.abs(decoded.astype(int) - pixels(image)).mean() < 3
+        assert len(compressed.data) < len(image.data) / 5
 
 
 def test_a_lens_is_in_camera_info_in_the_picture_and_in_the_points(simulate, client):
@@ -200,32 +247,6 @@ def test_a_lens_is_in_camera_info_in_the_picture_and_in_the_points(simulate, cli
     np.testing.assert_allclose(project(points[rows, columns]), centres, atol=1e-2)
 
 
-def test_every_picture_has_a_camera_info_with_the_same_stamp_on_every_topic(simulate, client):
-    from sensor_msgs.msg import CameraInfo, Image
-
-    simulate()
-    names = ("/camera_info", "/videocamera/camera_info")
-    topics = [client.subscribe(CameraInfo, name) for name in names]
-    images = client.subscribe(Image, "/camera/image_raw")
-    stamps = [stamp_s(image) for image in images.wait_for(10)]
-    for topic in topics:
-        infos = topic.wait_until(
-            lambda m: set(stamps[-3:]) <= {stamp_s(info) for info in m}, "infos of the pictures"
-        )
-        assert len({stamp_s(info) for info in infos}) == len(infos)
-
-
-def test_stamps_are_those_of_the_ticks_at_which_frames_are_due(simulate, client):
-    from sensor_msgs.msg import CameraInfo
-
-    simulate()
-    infos = client.subscribe(CameraInfo, "/camera_info").wait_for(10)
-    for info in infos:
-        time_s = stamp_s(info)
-        assert time_s * 100 == pytest.approx(round(time_s * 100), abs=1e-6)
-        assert (time_s * 30) % 1 < TICK_S * 30
-
-
 def test_best_effort_subscribers_get_large_noisy_pictures(simulate, client):
     from rclpy.qos import qos_profile_sensor_data
     from sensor_msgs.msg import Image
@@ -242,21 +263,6 @@ def test_best_effort_subscribers_get_large_noisy_pictures(simulate, client):
     # A plain floor: what differs between two frames is noise, twice.
     noise = np.std(first - second)
     assert noise == pytest.approx(np.sqrt(2 * ((0.007 * 255) ** 2 + 1 / 12)), rel=0.05)
-
-
-def test_compressed_pictures_show_the_same_image(simulate, client):
-    import cv2
-    from sensor_msgs.msg import CompressedImage, Image
-
-    simulate()
-    compressed = client.subscribe(CompressedImage, "/videocamera/compressed").wait_for(1)[0]
-    image = client.subscribe(Image, "/videocamera").wait_for(1)[0]
-    assert compressed.format == "rgb8; jpeg compressed bgr8"
-    assert compressed.header.frame_id == "camera_optical_frame"
-    decoded = cv2.imdecode(np.frombuffer(compressed.data, np.uint8), cv2.IMREAD_COLOR)
-    decoded = cv2.cvtColor(decoded, cv2.COLOR_BGR2RGB)
-    assert np.abs(decoded.astype(int) - pixels(image)).mean() < 3
-    assert len(compressed.data) < len(image.data) / 5
 
 
 def test_without_subscribers_camera_infos_are_published_and_nothing_is_rendered(simulate, client):

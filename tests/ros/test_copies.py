@@ -58,12 +58,11 @@ def test_copies_serve_goals_and_queries_without_a_busy_thread(launch, client):
     from builtin_interfaces.msg import Duration
     from control_msgs.action import FollowJointTrajectory
     from control_msgs.srv import QueryTrajectoryState
-    from rclpy.action import ActionClient
     from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
     launched = launch("mycobot", "copies:=2")
     launched.wait_until_ready()
-    (simulation,) = [p for p in launched.processes() if "arm_gazebo_node" in " ".join(p.cmdline())]
+    (simulation,) = launched.processes("arm_gazebo_node")
     controller = "/mycobot_280_1/arm_controller"
 
     def positions():
@@ -77,17 +76,9 @@ def test_copies_serve_goals_and_queries_without_a_busy_thread(launch, client):
     goal = FollowJointTrajectory.Goal(
         trajectory=JointTrajectory(joint_names=start.name, points=[point])
     )
-    action = client.run(
-        lambda: ActionClient(
-            client.node, FollowJointTrajectory, f"{controller}/follow_joint_trajectory"
-        ),
-        "the action client",
-    )
-    client.wait_until(action.server_is_ready, "the action server")
-    sent = client.run(lambda: action.send_goal_async(goal), "the goal")
-    handle = client.result_of(sent, "the goal's answer")
+    action = client.action(FollowJointTrajectory, f"{controller}/follow_joint_trajectory")
     before, began_s = simulation.cpu_times(), time.monotonic()
-    ended = client.run(handle.get_result_async, "the request for the result")
+    ended = client.send_goal(action, goal)
     answer = client.result_of(ended, "the goal's result")
     spent, lasted_s = simulation.cpu_times(), time.monotonic() - began_s
     assert answer.result.error_string == "Goal successfully reached!"

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import pytest
 
 from arm_cli.doctor.diagnosis import Severity
 from arm_cli.doctor.network import check_listening, find_listeners
-from launch_py.system.child_environment import PROFILE, dds_profile
+from launch_py.system.dds_profile import shipped_profile
 
 pytestmark = pytest.mark.ros
 
@@ -132,10 +133,9 @@ def _run(*command: str) -> str:
 def _wait_until_running(host: Host, end: str) -> None:
     """Block until the kernel reports the interface as running; before, Fast DDS ignores it."""
     state = ["ip", "-oneline", "link", "show", "dev", end]
-    for _ in range(100):
-        if "state UP" in _run(*host.inside(state)):
-            return
-    pytest.fail(f"the interface {end} does not run")
+    deadline_s = time.monotonic() + TIMEOUT_S
+    while "state UP" not in _run(*host.inside(state)):
+        assert time.monotonic() < deadline_s, f"the interface {end} does not run"
 
 
 def _expect_datagrams(here: Host, there: Host) -> None:
@@ -232,7 +232,7 @@ def test_another_host_that_names_this_one_receives_and_moves_nothing(
         env={
             **_without_discovery(),
             "ROS_STATIC_PEERS": HERE,
-            PROFILE: str(dds_profile(os.environ)),
+            **shipped_profile(os.environ),
         },
         capture_output=True,
         text=True,

@@ -75,7 +75,8 @@ def partner_until(last: int) -> list[tuple[int, tuple[str, ...]]]:
         timeout=TIMEOUT_S,
         check=True,
     ).stdout
-    lines = [line.split() for line in out.splitlines()]
+    # Fast DDS prints its complaints to stdout, on a busy machine.
+    lines = [line.split() for line in out.splitlines() if line[:1].isdigit()]
     return [(int(period), tuple(positions)) for period, *positions in lines]
 
 
@@ -115,9 +116,8 @@ def test_a_silent_partner_pauses_the_run_and_another_one_continues_it(runs, clie
         return client.call(GetSimulationState, "/get_simulation_state", request).state.state
 
     client.wait_until(lambda: state() == PAUSED, "the pause")
-    text = runs[2].read_text()
-    time_s = f"{LAST / 100:.3f}"
-    assert f"lock-step: no answer from /partner for the time {time_s} s within" in text, text
+    said = f"lock-step: no answer from /partner for the time {LAST / 100:.3f} s within"
+    client.wait_until(lambda: said in runs[2].read_text(), f"the log: {said}")
     parameter = Parameter("lockstep_timeout", value=60.0).to_parameter_msg()
     request = SetParameters.Request(parameters=[parameter])
     assert client.call(SetParameters, "/arm_gazebo/set_parameters", request).results[0].successful

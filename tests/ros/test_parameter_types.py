@@ -23,7 +23,9 @@ from arm_controller.arm_controller_node import ArmController
 from arm_controller.arm_gripper_loop_controller_node import ArmGripperLoopController
 from arm_controller.example_diff_drive_node import DiffDriveTest
 from arm_controller.example_gripper_node import GripperTest
+from arm_controller.hello_moveit_node import HelloMoveIt
 from arm_controller.pick_and_place_node import PickAndPlaceNode
+from arm_controller.plan_around_objects_node import PlanAroundObjects
 from arm_controller.publisher_defined_node import PublisherDefined
 from arm_controller.publisher_terminal_node import PublisherTerminal
 from arm_description.publishers.ros_joint_state_publisher import JointStatePublisher
@@ -84,6 +86,8 @@ MAKERS: dict[str, Callable[[], Node]] = {
     "PublisherDefined": PublisherDefined,
     "ArmGripperLoopController": ArmGripperLoopController,
     "PickAndPlaceNode": PickAndPlaceNode,
+    "HelloMoveIt": HelloMoveIt,
+    "PlanAroundObjects": PlanAroundObjects,
     "GripperTest": GripperTest,
     "DiffDriveTest": DiffDriveTest,
     "ControllerManagerNode": lambda: ControllerManagerNode(["manager", *given_arguments()]),

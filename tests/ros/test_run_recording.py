@@ -6,7 +6,6 @@ import subprocess
 import sys
 import time
 
-import psutil
 import pytest
 
 from arm_gazebo.recording.replay import Replay
@@ -62,11 +61,7 @@ def test_a_launch_is_recorded_from_its_start_also_if_the_simulation_is_killed(
     deadline = time.monotonic() + TIMEOUT_S
     while Replay(RunFile(path)).run().time_s < moved_s:
         assert time.monotonic() < deadline, "the file is not written any more"
-    (simulation,) = (
-        process
-        for process in psutil.Process(running.process.pid).children(recursive=True)
-        if any("arm_gazebo_node" in word for word in process.cmdline())
-    )
+    (simulation,) = running.processes("arm_gazebo_node")
     simulation.kill()
     running.wait()
     result = Replay(RunFile(path)).run()

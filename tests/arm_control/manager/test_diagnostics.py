@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from arm_control import ControllerManager, ControlLoop, LifecycleState, Pacer, SwitchRequest
+from arm_control.hardware.driver import HardwareHealth
 from arm_control.hardware.info import parse_hardware_info
 from arm_control.hardware.mock_components import GenericSystem
 from arm_control.manager.diagnostics import (
@@ -109,6 +110,23 @@ def running(ward: Ward) -> Iterator[Ward]:
     ward.loop.stop()
     go.set()
     assert ward.loop.join(30.0)
+
+
+class AilingSystem(GenericSystem):
+    """Knows that it is too hot."""
+
+    def health(self) -> HardwareHealth:
+        return HardwareHealth("it is too hot", {"temperature": "81 C"})
+
+
+def test_a_driver_tells_its_own_faults(bench: Any) -> None:
+    ward = Ward(bench)
+    component = next(iter(bench.manager.resources.components.values()))
+    assert component.name not in ward.components.message
+    component.hardware = AilingSystem(component.hardware.info)
+    report = ward.components
+    assert (report.level, report.message) == (Level.ERROR, f"{component.name}: it is too hot")
+    assert report.values[f"{component.name}.temperature"] == "81 C"
 
 
 def test_a_manager_without_hardware_waits_for_its_description() -> None:

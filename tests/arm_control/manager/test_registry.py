@@ -36,10 +36,12 @@ def test_built_in_types_are_found() -> None:
 
 
 @pytest.mark.parametrize("type_name", controller_types())
-def test_every_type_is_a_controller_with_an_adapter(type_name: str) -> None:
+def test_every_type_is_a_controller_and_its_adapter_exists(type_name: str) -> None:
     found = controller_class(type_name)
     assert issubclass(found, Controller)
-    assert load_object(found.adapter)
+    is_own = found.__module__.startswith("arm_control.")
+    assert found.adapter or not is_own
+    assert not found.adapter or load_object(found.adapter)
 
 
 def test_types_are_listed_in_order() -> None:
@@ -89,7 +91,7 @@ def test_hardware_is_made_by_its_plugin() -> None:
 
 def test_an_unknown_plugin_is_refused(installed: list[Any]) -> None:
     info = HardwareInfo("H", "system", "x/Y")
-    with pytest.raises(RegistryError, match="no hardware plugin 'x/Y'; known: mock_components/"):
+    with pytest.raises(RegistryError, match=r"no hardware plugin 'x/Y'; known: .*mock_components/"):
         create_hardware(info)
 
 

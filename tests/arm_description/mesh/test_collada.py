@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from mesh_measures import measures
 
 from arm_description.errors import MeshFileError
 from arm_description.mesh.file import read_mesh_file
@@ -130,17 +131,6 @@ def write(path, sources=PLAIN, drawn="", nodes=f"<node>{DRAWN}</node>", unit="1"
         )
     )
     return path
-
-
-def measures(parts) -> tuple[float, float, list, list]:
-    """Return the area, the volume and the bounds of all parts."""
-    area = volume = 0.0
-    for part in parts:
-        a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
-        area += np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
-        volume += np.einsum("fk,fk->f", a, np.cross(b, c)).sum() / 6
-    every = np.concatenate([part.vertices for part in parts])
-    return area, volume, every.min(axis=0).tolist(), every.max(axis=0).tolist()
 
 
 @pytest.mark.parametrize("form", ["v", "vn", "nv"])

@@ -6,6 +6,7 @@ import struct
 
 import numpy as np
 import pytest
+from mesh_measures import measures
 
 from arm_description.errors import MeshFileError
 from arm_description.mesh.file import read_mesh_file
@@ -86,17 +87,6 @@ class Document:
         parts = struct.pack("<I4s", len(text), b"JSON") + text
         parts += struct.pack("<I4s", len(buffer), b"BIN\0") + buffer
         path.write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(parts)) + parts)
-
-
-def measures(parts) -> tuple[float, float, list, list]:
-    """Return the area, the volume and the bounds of all parts."""
-    area = volume = 0.0
-    for part in parts:
-        a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
-        area += np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
-        volume += np.einsum("fk,fk->f", a, np.cross(b, c)).sum() / 6
-    every = np.concatenate([part.vertices for part in parts])
-    return area, volume, every.min(axis=0).tolist(), every.max(axis=0).tolist()
 
 
 def assert_is_the_box(path, tolerance: float = 1e-5) -> None:

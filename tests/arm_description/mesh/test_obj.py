@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mesh_measures import measures
 
 from arm_description.errors import MeshFileError
 from arm_description.mesh.file import read_mesh_file
@@ -26,17 +27,6 @@ def prism(outline: list[tuple[float, float]]) -> tuple[list[tuple[float, ...]], 
     points = [(x, y, z) for z in (0.0, HEIGHT) for x, y in outline]
     sides = [[i, (i + 1) % n, n + (i + 1) % n, n + i] for i in range(n)]
     return points, [list(range(n - 1, -1, -1)), list(range(n, 2 * n)), *sides]
-
-
-def measures(parts) -> tuple[float, float, np.ndarray]:
-    """Return the area, the volume and the bounds of all parts."""
-    area = volume = 0.0
-    for part in parts:
-        a, b, c = np.moveaxis(part.vertices[part.faces], 1, 0)
-        area += np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
-        volume += np.einsum("fk,fk->f", a, np.cross(b, c)).sum() / 6
-    every = np.concatenate([part.vertices for part in parts])
-    return area, volume, np.array([every.min(axis=0), every.max(axis=0)])
 
 
 def measures_of_mujoco(path) -> tuple[float, float]:
@@ -104,14 +94,14 @@ def test_every_form_is_read_as_it_is_meant(tmp_path_factory, shape, seed, form, 
     points, faces = prism(outline)
     path = tmp_path_factory.mktemp("obj") / "part.obj"
     path.write_text(written(points, faces, seed, form, relative, order))
-    area, volume, bounds = measures(read_mesh_file(path))
+    area, volume, low, high = measures(read_mesh_file(path))
     around = sum(
         np.hypot(*np.subtract(a, b))
         for a, b in zip(outline, outline[1:] + outline[:1], strict=True)
     )
     assert area == pytest.approx(2 * floor + around * HEIGHT)
     assert volume == pytest.approx(floor * HEIGHT)
-    assert bounds.tolist() == [np.min(points, axis=0).tolist(), np.max(points, axis=0).tolist()]
+    assert [low, high] == [np.min(points, axis=0).tolist(), np.max(points, axis=0).tolist()]
     if shape == "square" and form == "v":
         # MuJoCo cuts a notch wrongly, wants a normal for each corner, and reads one group.
         lines = [line for line in path.read_text().splitlines() if line[:1] in ("v", "f")]

@@ -10,11 +10,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from forked import popen, words_of_arm
 
 from launch_py.fast_dds.removal import SharedMemoryLedger
 
 TIMEOUT_S = 120.0
-END_TIMEOUT_S = 15.0
+END_TIMEOUT_S = 60.0
 FOREIGN = "RTPS_TRANSPORT_SHM"
 """The common part of Fast DDS's own errors about shared memory."""
 
@@ -26,17 +27,8 @@ class CommandLine:
         search = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
         self._changed = threading.Condition()
         self._texts = {"out": "", "err": ""}
-        # `exec` makes the shell's process that of a single command, for signals.
-        single = not any(word in line for word in ("|", "&&", ";"))
-        self.process = subprocess.Popen(
-            ["/bin/bash", "-c", f"exec {line}" if single else line],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            stdin=subprocess.DEVNULL,
-            text=True,
-            env={**os.environ, "PATH": search},
-            cwd=folder,
-        )
+        environment = {**os.environ, "PATH": search}
+        self.process = popen(_words(line), environment, stderr=subprocess.PIPE, cwd=folder)
         self._readers = [
             threading.Thread(target=self._read, args=(name, stream), daemon=True)
             for name, stream in (("out", self.process.stdout), ("err", self.process.stderr))
@@ -120,6 +112,15 @@ class CommandLine:
         for stream in (self.process.stdout, self.process.stderr):
             if stream is not None:
                 stream.close()
+
+
+def _words(line: str) -> list[str]:
+    """Return what runs a command line: a shell only where the line needs one."""
+    if words := words_of_arm(line):
+        return words
+    # `exec` makes the shell's process that of a single command, for signals.
+    single = not any(word in line for word in ("|", "&&", ";"))
+    return ["/bin/bash", "-c", f"exec {line}" if single else line]
 
 
 @pytest.fixture

@@ -1,21 +1,47 @@
 """How long a command waits for the delivery of its last messages."""
 
-import time
+import itertools
+from contextlib import suppress
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 
 import pytest
 
-from arm_cli.errors import CommandUsageError
+from arm_cli.errors import CommandUsageError, StoppedError
 from arm_cli.names import absolute_name
+from arm_cli.ros import session as session_module
 from arm_cli.ros.session import ACKNOWLEDGE_TIMEOUT_S, open_session
 
 pytestmark = pytest.mark.ros
+
+
+class Clock:
+    """A time that goes on by a little with each look at it."""
+
+    def __init__(self) -> None:
+        self._looks = itertools.count()
+        self._passed_s = 0.0
+
+    def monotonic(self) -> float:
+        return self._passed_s + 0.005 * next(self._looks)
+
+    def pass_by(self, seconds: float) -> None:
+        self._passed_s += seconds
+
+
+@pytest.fixture
+def clock(monkeypatch) -> Clock:
+    """The time of sessions."""
+    clock = Clock()
+    monkeypatch.setattr(session_module, "time", SimpleNamespace(monotonic=clock.monotonic))
+    return clock
 
 
 @dataclass
 class PublisherOf:
     """A fake publisher whose readers acknowledge late, or never."""
 
+    clock: Clock
     readers: int
     acknowledged_after_s: float
     waited_s: list[float] = field(default_factory=list)
@@ -25,12 +51,12 @@ class PublisherOf:
 
     def wait_for_all_acked(self, timeout) -> bool:
         self.waited_s.append(timeout.nanoseconds * 1e-9)
-        time.sleep(min(self.acknowledged_after_s, self.waited_s[-1]))
+        self.clock.pass_by(min(self.acknowledged_after_s, self.waited_s[-1]))
         return self.acknowledged_after_s <= self.waited_s[-1]
 
 
-def test_a_command_waits_until_its_last_messages_are_acknowledged():
-    late, in_time, unread = PublisherOf(1, 0.2), PublisherOf(2, 0.0), PublisherOf(0, 0.0)
+def test_a_command_waits_until_its_last_messages_are_acknowledged(clock):
+    late, in_time, unread = (PublisherOf(clock, *each) for each in ((1, 0.2), (2, 0.0), (0, 0.0)))
     with open_session() as session:
         session.wait_for_delivery([late, in_time, unread], 0.01)
     assert late.waited_s == [pytest.approx(ACKNOWLEDGE_TIMEOUT_S, abs=0.1)]
@@ -39,8 +65,8 @@ def test_a_command_waits_until_its_last_messages_are_acknowledged():
     assert unread.waited_s == []
 
 
-def test_readers_that_never_acknowledge_delay_a_command_by_a_second_at_most():
-    first, second = PublisherOf(1, float("inf")), PublisherOf(1, float("inf"))
+def test_readers_that_never_acknowledge_delay_a_command_by_a_second_at_most(clock):
+    first, second = (PublisherOf(clock, 1, float("inf")) for _ in range(2))
     with open_session() as session:
         session.wait_for_delivery([first, second], 0.01)
     assert len(first.waited_s) == 1
@@ -77,3 +103,21 @@ def test_a_host_that_does_not_exist_is_reported(monkeypatch):
         open_session(),
     ):
         pass
+
+
+@pytest.mark.parametrize(("error", "code"), [(None, 0), (StoppedError(15), 15), (OSError(), 1)])
+def test_the_node_s_end_is_limited_in_time(error, code, monkeypatch):
+    calls = []
+
+    class Limit:
+        def start(self, exit_code):
+            calls.append(exit_code)
+
+        def cancel(self):
+            calls.append("cancelled")
+
+    monkeypatch.setattr(session_module, "DestructionLimit", Limit)
+    with suppress(StoppedError, OSError), open_session():
+        if error is not None:
+            raise error
+    assert calls == [code, "cancelled"]

@@ -51,10 +51,11 @@ def test_requests_and_responses_are_shown(client: Any, start: Any) -> None:
     assert all("event_type: 1" in event for event in requests)
 
 
-def test_a_service_that_publishes_nothing_is_explained(client: Any, run: Any) -> None:
+def test_a_service_that_publishes_nothing_is_explained(client: Any, run_until: Any) -> None:
     client.node.create_service(SetBool, "/silent", answer)
-    said = run("arm service echo /silent --timeout 1.5", code=1)
-    assert "is service introspection enabled in its node?" in said
+    explained = "is service introspection enabled in its node?"
+    line = "arm service echo /silent --timeout 1.5"
+    said = run_until(line, lambda text: explained in text, code=1)
     assert "no event of /silent within 1.5 s" in said
 
 
@@ -97,13 +98,13 @@ def test_tab_knows_parameters_and_their_values(client, offered):
         client.wait_until(lambda line=line, words=words: offers(line, *words), f"{line}: {words}")
 
 
-def test_what_is_not_set_is_said_with_how_to_set_it(client, start):
+def test_what_is_not_set_is_said_with_how_to_set_it(client, run_until):
     client.node.declare_parameter("goal", Parameter.Type.DOUBLE)
-    command = start("arm param get /test_client goal")
-    assert command.wait() == 0
-    assert command.out == "Parameter not set.\n"
-    assert "goal is declared, but has no value yet" in command.err
-    assert "arm param set /test_client goal VALUE" in command.err
+    get = "arm param get /test_client goal"
+    run_until(get, lambda text: text == "Parameter not set.\n")
+    hints = ("goal is declared, but has no value yet", "arm param set /test_client goal VALUE")
+    said = run_until(f"{get} 2>&1", lambda text: all(hint in text for hint in hints))
+    assert "Parameter not set." in said
 
 
 NO_ROS = "ROS_LOG_DIR=/dev/null"
@@ -115,8 +116,12 @@ def test_tab_gets_names_from_a_running_robot_without_a_node(start, offered, clie
         "arm run robot_state_publisher robot_state_publisher --ros-args "
         """-p robot_description:='<robot name="r"><link name="base"/></robot>'"""
     )
-    client.wait_until(
-        lambda: "/robot_state_publisher" in offered("arm node info /", NO_ROS), "the node offered"
-    )
-    assert {"/robot_description", "/tf_static"} <= set(offered("arm topic echo /", NO_ROS))
-    assert "/robot_state_publisher/set_parameters" in offered("arm service call /", NO_ROS)
+    for line, words in (
+        ("arm node info /", {"/robot_state_publisher"}),
+        ("arm topic echo /", {"/robot_description", "/tf_static"}),
+        ("arm service call /", {"/robot_state_publisher/set_parameters"}),
+    ):
+        # Tab does not wait long for the names.
+        client.wait_until(
+            lambda line=line, words=words: words <= set(offered(line, NO_ROS)), f"{line}: {words}"
+        )

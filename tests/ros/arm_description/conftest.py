@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import yaml
-from programs import Program
+from programs import Program, RosProgram
 
 LIMIT = "<limit lower='-3' upper='3' effort='1' velocity='1'/>"
 URDF = f"""<robot name='r'>
@@ -40,7 +40,7 @@ def start(tmp_path: Path) -> Iterator[Callable[..., Program]]:
         file.write_text(yaml.safe_dump({"/**": {"ros__parameters": named}}))
         ros = ["--ros-args", "--params-file", str(file)] if parameters else []
         command = [sys.executable, "-m", f"arm_description.{module}", *arguments, *ros]
-        started.append(Program(command, {**os.environ, "ROS_LOG_DIR": str(tmp_path / "log")}))
+        started.append(RosProgram(command, {**os.environ, "ROS_LOG_DIR": str(tmp_path / "log")}))
         return started[-1]
 
     yield start_one

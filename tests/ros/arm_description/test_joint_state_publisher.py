@@ -48,13 +48,6 @@ def test_a_file_gives_the_joints_in_its_order_with_defaults(start, states, urdf_
     assert (len(message.velocity), len(message.effort)) == (0, 0)
 
 
-def test_a_xacro_file_is_taken_too(start, states, tmp_path, urdf):
-    file = tmp_path / "robot.urdf.xacro"
-    file.write_text(urdf)
-    start(MODULE, str(file))
-    assert states.wait_for()[0].name == ["turn", "push", "grip"]
-
-
 def test_a_description_from_the_topic_starts_it_and_another_takes_its_place(
     start, states, describe, urdf
 ):
@@ -148,7 +141,6 @@ def test_rate_and_delta_change_at_once(start, states, urdf_file, set_parameters)
     ("values", "reason"),
     [
         ({"rate": 0}, "Parameter rate out of range. Min: 1, Max: 10000, value: 0"),
-        ({"use_mimic_tags": False}, "Trying to set a read-only parameter: use_mimic_tags"),
         ({"delta": 0.5, "source_list": ["x"]}, "Trying to set a read-only parameter: source_list"),
     ],
 )
@@ -169,20 +161,11 @@ def test_joints_that_mimic_in_a_circle_end_it(start, describe):
     assert "Found an infinite recursive mimic chain: ['j', 'k', 'j']" in node.output
 
 
-def test_joints_that_depend_in_a_circle_end_it(start, describe, urdf):
-    parents = {"turn": {"parent": "push"}, "push": {"parent": "turn"}}
-    node = start(MODULE, dependent_joints=parents)
-    describe(urdf)
-    assert node.wait() == 1
-    assert "Found an infinite recursive mimic chain: ['turn', 'push', 'turn']" in node.output
-
-
 @pytest.mark.parametrize(
     ("arguments", "parameters", "code", "sentence"),
     [
         (["/no/such.urdf"], {}, 1, "cannot read /no/such.urdf: No such file or directory"),
         ([], {"rate": 0}, 1, "rate must be an integer from 1 to 10000 (Hz), not 0"),
-        ([], {"zeros": {"turn": "up"}}, 1, "zeros.turn must be a finite number, not 'up'"),
         (["a", "b"], {}, 2, "unrecognized arguments: b"),
     ],
 )

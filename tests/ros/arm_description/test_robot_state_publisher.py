@@ -31,19 +31,16 @@ def children(message) -> set[str]:
     return {stamped.child_frame_id for stamped in message.transforms}
 
 
-def test_the_description_is_latched(client, start, urdf, latched):
+def test_late_subscribers_get_the_description_and_fixed_and_planar_joints(
+    client, start, urdf, latched
+):
     from std_msgs.msg import String
+    from tf2_msgs.msg import TFMessage
 
     start(MODULE, robot_description=urdf)
     first = client.subscribe(String, "robot_description", latched).wait_for()
     late = client.subscribe(String, "robot_description", latched).wait_for()
     assert first[0].data == late[0].data == urdf
-
-
-def test_fixed_and_planar_joints_are_static_for_late_subscribers_too(client, start, urdf, latched):
-    from tf2_msgs.msg import TFMessage
-
-    start(MODULE, robot_description=urdf)
     client.subscribe(TFMessage, "/tf_static", latched).wait_for()
     late = client.subscribe(TFMessage, "/tf_static", latched).wait_for()
     assert transforms(late[0]) == {

@@ -2,6 +2,7 @@
 
 import os
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,8 @@ pytestmark = [
 
 GOAL = [1.0, 0.5, 0.1, 0.5]
 CONTROLLER = "position_controller"
+WITHIN_S = 40.0
+"""Simulated, at four times real time: a busy machine may hold a command up."""
 # Ctrl-C ends it at once: rclpy's own handlers turn one that comes while a message is converted into
 # a RuntimeError, and the program would end with exit code 1.
 LISTENER = """
@@ -38,7 +41,7 @@ def test_commands_states_and_the_users_own_nodes(arm_ros):
     assert os.environ["ROS_DOMAIN_ID"] == str(arm_ros.domain_id)
     own = arm_ros.run(sys.executable, "-c", LISTENER)
     arm_ros.command(CONTROLLER, GOAL)
-    arm_ros.assert_reaches(GOAL, hold_s=0.2)
+    arm_ros.assert_reaches(GOAL, within_s=WITHIN_S, hold_s=0.2)
     arm_ros.assert_never_exceeds(velocity=2.1)
     with pytest.raises(AssertionError, match="j0: position"):
         arm_ros.assert_never_exceeds(position={"j0": 0.9})
@@ -53,12 +56,12 @@ def test_faults_in_the_simulation(arm_ros):
         arm_ros.command(CONTROLLER, GOAL)
         with pytest.raises(AssertionError, match="fault: j1 joint stalled"):
             arm_ros.assert_reaches(GOAL, within_s=1.0)
-    arm_ros.assert_reaches(GOAL)
+    arm_ros.assert_reaches(GOAL, within_s=WITHIN_S)
     with arm_ros.faults.sensor_frozen("j0"):
         arm_ros.command(CONTROLLER, [0.0] * 4)
-        arm_ros.assert_reaches({"j1": 0.0, "j2": 0.0, "j3": 0.0})
+        arm_ros.assert_reaches({"j1": 0.0, "j2": 0.0, "j3": 0.0}, within_s=WITHIN_S)
         arm_ros.assert_reaches({"j0": 1.0})
-    arm_ros.assert_reaches([0.0] * 4)
+    arm_ros.assert_reaches([0.0] * 4, within_s=WITHIN_S)
     with (
         pytest.raises(BenchError, match="faults: no joint 'j9'; there are j0, j1, j2, j3"),
         arm_ros.faults.joint_stalled("j9"),
@@ -71,13 +74,13 @@ def test_faults_in_the_simulation(arm_ros):
 def test_faults_of_messages_and_processes(arm_ros):
     from sensor_msgs.msg import Image, JointState
 
+    def twice(messages) -> int:
+        stamps = Counter((m.header.stamp.sec, m.header.stamp.nanosec) for m in messages)
+        return list(stamps.values()).count(2)
+
     relayed = arm_ros.collect("/relayed", JointState)
     with arm_ros.faults.messages_doubled("/joint_states", to="/relayed", after_s=0.01):
-        stamps = [
-            (m.header.stamp.sec, m.header.stamp.nanosec)
-            for m in relayed.wait_until(lambda m: len(m) >= 200, "200 messages")
-        ]
-    assert len(set(stamps)) <= 0.75 * len(stamps)
+        relayed.wait_until(lambda m: twice(m) >= 100, "100 messages that come twice")
 
     arm_ros.collect("/pictures", Image)
     seen = arm_ros.collect("/dark", Image)
@@ -93,7 +96,7 @@ def test_faults_of_messages_and_processes(arm_ros):
         with pytest.raises(BenchError, match="timed out after 1 s"):
             arm_ros.collect("/joint_states", JointState).wait_for(100_000, timeout_s=1.0)
         before = len(arm_ros.history)
-    assert arm_ros.run_until(lambda: len(arm_ros.history) > before, timeout_s=10.0)
+    assert arm_ros.run_until(lambda: len(arm_ros.history) > before, timeout_s=60.0)
 
     with arm_ros.faults.process_killed("robot_state_publisher"):
         arm_ros.wait_for_log(r"robot_state_publisher.* was killed by SIGKILL")
@@ -110,9 +113,9 @@ def test_goals(arm_ros):
     joints += ["link4_to_link5", "link5_to_link6", "link6_to_link6_flange"]
     trajectory = {"times_s": [1.0], "positions": [[0.3] * 6], "joints": joints}
     arm_ros.follow("arm_controller", trajectory)
-    arm_ros.assert_reaches(dict.fromkeys(joints, 0.3), tolerance=0.05)
+    arm_ros.assert_reaches(dict.fromkeys(joints, 0.3), tolerance=0.05, within_s=WITHIN_S)
     arm_ros.grip("gripper_action_controller", -0.3)
-    arm_ros.assert_reaches({"gripper_controller": -0.3}, tolerance=0.05)
+    arm_ros.assert_reaches({"gripper_controller": -0.3}, tolerance=0.05, within_s=WITHIN_S)
 
 
 def test_a_failing_test_has_the_launchs_log_and_a_plot(pytester: pytest.Pytester):

@@ -78,10 +78,7 @@ class User:
         assert answer.entity_name == "can", answer
 
     def _status_of(self, kind: Any, name: str, goal: Any, cancel: bool = False) -> int:
-        from rclpy.action import ActionClient
-
-        action = ActionClient(self._client.node, kind, name)
-        self._client.wait_until(action.server_is_ready, f"the action {name}")
+        action = self._client.action(kind, name)
 
         async def send() -> Any:
             handle = await action.send_goal_async(goal)
@@ -92,7 +89,6 @@ class User:
 
         # In the executor's thread: an answer must not come before its request is noted.
         result = self._client.result_of(self._client.executor.create_task(send), name)
-        self._client.run(action.destroy, name)
         return result.status
 
 

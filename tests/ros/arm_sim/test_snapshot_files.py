@@ -33,6 +33,8 @@ def test_a_state_goes_from_the_library_to_the_node_and_back(launch, client, tmp_
         time_s, positions = sim.time_s, sim.joints.position
     launch("arm_gazebo", "arm_gazebo.launch.py", "paused:=true").wait_until_ready()
     states = client.subscribe(JointState, "/joint_states")
+    # The restored state is published once.
+    client.be_known_to_server("/get_simulation_state")
     arm_sim_verb("restore", str(first))
     there = states.wait_until(
         lambda m: bool(m) and list(m[-1].position) == positions.tolist(), "the library's state"

@@ -102,7 +102,7 @@ class VirtualDisplay:
     def close(self) -> None:
         """End the server."""
         self.process.terminate()
-        self.process.wait(20.0)
+        self.process.wait(60.0)
 
 
 @pytest.fixture

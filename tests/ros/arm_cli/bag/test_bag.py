@@ -2,6 +2,7 @@
 
 import json
 import signal
+import time
 from collections import Counter
 from itertools import pairwise
 from pathlib import Path
@@ -73,6 +74,7 @@ def test_info(run, bag):
 def test_play_keeps_times_and_content(start, client, bag):
     played = client.subscribe(JointState, "/played", 1000)
     described = client.subscribe(String, "/described", LATCHED)
+    began_s = time.monotonic()
     command = start(
         f"arm bag play {bag} --rate 0.5 --delay 2 --topics /joint_states /robot_description "
         "-m /joint_states:=/played /robot_description:=/described"
@@ -91,12 +93,14 @@ def test_play_keeps_times_and_content(start, client, bag):
     assert messages == sent[first : last + 1]
     described.wait_for(1)
     # Never early; how late is the machine's affair.
-    taken_s = played.arrivals_s[len(messages) - 1] - played.arrivals_s[0]
-    assert taken_s > 0.6 * (times_ns[last] - times_ns[first]) * 1e-9 / 0.5
+    taken_s = played.arrivals_s[len(messages) - 1] - began_s
+    assert taken_s > 2.0 + (times_ns[last] - times_ns[0]) * 1e-9 / 0.5
 
 
 def test_the_clock_of_a_bag(start, client, bag):
-    command = start(f"arm bag play {bag} --clock 50 -m /clock:=/x --topics /tf_static --rate 0.5")
+    clock = client.subscribe(Clock, "/clock", 1000)
+    # So slow that it lasts until it is discovered.
+    command = start(f"arm bag play {bag} --clock 50 -m /clock:=/x --topics /tf_static --rate 0.1")
     with BagReader(bag) as reader:
         span = reader.metadata.span
 
@@ -105,7 +109,6 @@ def test_the_clock_of_a_bag(start, client, bag):
         # The simulation's own clock has not come so far.
         return [time_ns for time_ns in times_ns if time_ns >= span.start_ns]
 
-    clock = client.subscribe(Clock, "/clock", 1000)
     messages = clock.wait_until(lambda m: len(ticks(m)) >= 20, "20 ticks of the bag's clock")
     found = ticks(messages)
     assert found == sorted(found)

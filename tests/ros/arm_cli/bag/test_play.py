@@ -63,7 +63,8 @@ def plain_file(path: Path, message_encoding: str = "cdr") -> Path:
 
 def test_a_compressed_message_of_a_file_without_a_summary_arrives(start, client, tmp_path):
     heard = client.subscribe(String, "/a", 10)
-    command = start(f"arm bag play {plain_file(tmp_path / 'bag.mcap')}")
+    # The delay is for a busy machine, which discovers the subscription late.
+    command = start(f"arm bag play {plain_file(tmp_path / 'bag.mcap')} --delay 1")
     assert command.wait() == 0, command.err
     heard.wait_until(bool, "the message")
     assert [message.data for message in heard.messages] == ["from elsewhere"]

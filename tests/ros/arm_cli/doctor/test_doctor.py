@@ -114,7 +114,7 @@ def test_a_command_by_the_wall_clock_and_a_second_clock(doctor, client, send_tra
 
 
 def process_of(simulation, name: str) -> psutil.Process:
-    [process] = [p for p in simulation.processes() if name in str(p.cmdline())]
+    [process] = simulation.processes(name)
     return process
 
 
