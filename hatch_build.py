@@ -1,10 +1,15 @@
-"""Puts the executables of each package where ROS 2's own tools look: <prefix>/lib/<package>/.
+"""Two hooks of the build: the ROS 2 wheels that the suite needs, and executables for ROS 2's tools.
 
+The environment variable ROS_DISTRO chooses the wheels, since pip has no other way to replace a
+dependency by another.
+
+The executables of each package are put where ROS 2's own tools look: <prefix>/lib/<package>/.
 `ros2 run`, `ros2 pkg executables` and launch_ros read that folder alone. Each file runs the script
 of pip in <prefix>/bin. Packages that the suite stands in for, such as robot_state_publisher, get
 theirs too, and a marker in the ament index; its text tells them from the real package.
 """
 
+import os
 import shlex
 import shutil
 import tempfile
@@ -13,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+from hatchling.metadata.plugin.interface import MetadataHookInterface
 
 STAND_INS = "arm_cli/resource/executable_stand_ins/arm_cli"
 MARKERS = "share/ament_index/resource_index/packages"
@@ -22,7 +28,22 @@ exec "$(dirname "$(realpath "$0")")/../../bin/{words}" "$@"
 """
 
 
-class LibFolders(BuildHookInterface):
+class RosDependencies(MetadataHookInterface):
+    """Adds the wheels of the distribution that ROS_DISTRO names."""
+
+    def update(self, metadata: dict[str, Any]) -> None:
+        """Set the dependencies, or end with a sentence if there are no such wheels."""
+        wheels: dict[str, list[str]] = self.config["ros"]
+        chosen = os.environ.get("ROS_DISTRO") or next(iter(wheels))
+        if chosen not in wheels:
+            raise SystemExit(
+                f"ROS_DISTRO is {chosen!r}, but the arm suite is made for {' or '.join(wheels)} "
+                "only; set it to one of them, or unset it"
+            )
+        metadata["dependencies"] = [*wheels[chosen], *self.config["dependencies"]]
+
+
+class LibFolders(BuildHookInterface[Any]):
     """Adds the files to the wheel, also to an editable one."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:

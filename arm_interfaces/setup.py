@@ -5,12 +5,13 @@ Only the backend runs it, as in ``pip install ./arm_interfaces``. The other meta
 """
 
 from interface_build import command, interface_package
-from interface_build.project import DEFINITIONS
+from interface_build.project import DEFINITIONS, read_project
 from setuptools import Extension, setup
 
 PACKAGES = interface_package.find_packages(DEFINITIONS)
 
 setup(
+    install_requires=read_project().dependencies,
     ext_modules=[Extension(package.extension_name, sources=[]) for package in PACKAGES],
     cmdclass={
         "build": command.Build,

@@ -1,4 +1,4 @@
-"""Makes the manual's pictures of the page: the arm, what is inside its links, and a plan.
+"""Makes the manual's pictures of the page: the arm, what is inside its links, a thing, and a plan.
 
     python docs/make_page_pictures.py
 
@@ -85,6 +85,21 @@ def take_a_plan(page: Page) -> None:
     take(page, "page_planning.png")
 
 
+def take_a_thing(page: Page) -> None:
+    """Take a thing that is chosen, and the overlays of an arm that has moved."""
+    open_page(page)
+    page.get_by_text("Overlays", exact=True).first.dispatch_event("click")
+    page.get_by_role("combobox", name="Trail of").click()
+    page.get_by_role("option", name="wrist", exact=True).click()
+    for label in ("Robot's centre of mass", "Efforts"):
+        page.get_by_role("checkbox", name=label, exact=True).dispatch_event("click")
+    topic = "/position_controller/commands"
+    with running("topic", "pub", "--once", topic, "std_msgs/msg/Float64MultiArray", POSE):
+        page.get_by_role("tab", name="World", exact=True).click()
+        page.locator("[data-thing=pink_cylinder]").click()
+        take(page, "page_world.png")
+
+
 def main() -> None:
     """Make the pictures."""
     browser_path = next(filter(None, map(shutil.which, BROWSERS)), None)
@@ -96,6 +111,7 @@ def main() -> None:
         )
         for take_pictures, arguments in (
             (take_the_arm, ("world:=objects", "camera:=side")),
+            (take_a_thing, ("world:=objects", "camera:=none")),
             (take_a_plan, ("mycobot", "planning:=true")),
         ):
             page = browser.new_page(viewport=SIZE)

@@ -44,6 +44,7 @@ LAUNCH_FILES = (
     "arm_gazebo/arm_gazebo.launch.py",
     "arm_gazebo/arm_world.launch.py",
     "arm_gazebo/sim.launch.py",
+    "arm_gazebo/leader_follower.launch.py",
     "arm_control/arm_control.launch.py",
     "arm_control/arm_mock.launch.py",
     "arm_controller/arm_controller_node.launch.py",

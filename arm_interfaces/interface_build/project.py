@@ -5,6 +5,7 @@ Several distributions share this package: the others have a link to it beside th
 """
 
 import functools
+import os
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +17,7 @@ DEFINITIONS = _FOLDER / "interfaces"
 
 @dataclass(frozen=True, slots=True)
 class Project:
-    """What ``pyproject.toml`` says.
+    """What ``pyproject.toml`` says, for the ROS 2 distribution that ROS_DISTRO names.
 
     Attributes:
         name: the distribution's name as messages show it, such as ``arm_interfaces``.
@@ -29,7 +30,18 @@ class Project:
 
 @functools.cache
 def read_project() -> Project:
-    """Read ``pyproject.toml``."""
-    text = (_FOLDER / "pyproject.toml").read_text(encoding="utf-8")
-    table = tomllib.loads(text)["project"]
-    return Project(table["name"].replace("-", "_"), tuple(table["dependencies"]))
+    """Read ``pyproject.toml``.
+
+    Raises:
+        SystemExit: ROS_DISTRO names a distribution without wheels.
+    """
+    table = tomllib.loads((_FOLDER / "pyproject.toml").read_text(encoding="utf-8"))
+    name, build = table["project"]["name"].replace("-", "_"), table["tool"]["interface_build"]
+    wheels: dict[str, list[str]] = build["ros"]
+    chosen = os.environ.get("ROS_DISTRO") or next(iter(wheels))
+    if chosen not in wheels:
+        raise SystemExit(
+            f"ROS_DISTRO is {chosen!r}, but {name} is built for {' or '.join(wheels)} only; "
+            "set it to one of them, or unset it"
+        )
+    return Project(name, (*wheels[chosen], *build["dependencies"]))
