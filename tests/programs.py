@@ -100,7 +100,10 @@ class Program(LoggedProcess):
 
     def wait(self, timeout_s: float = TIMEOUT_S) -> int:
         """Wait for its end; return the exit code."""
-        code = self.process.wait(timeout_s)
+        try:
+            code = self.process.wait(timeout_s)
+        except subprocess.TimeoutExpired:
+            pytest.fail(f"{self.name} still runs after {timeout_s:g} s:\n{self.output}")
         self._reader.join(timeout_s)
         print(self.output)  # Shown if the test fails.
         return code

@@ -7,6 +7,7 @@ from contextlib import closing
 from pathlib import Path
 from threading import Timer
 
+import pytest
 from forked import popen, words_of_arm
 from originals_table import COURSE, INTERRUPT, Row, Step, read_parts
 from shell import TIMEOUT_S, Running, comparable, environment_of_reader, pattern
@@ -19,6 +20,7 @@ OF_FILES = re.compile(
 """Lines that only look at what is installed: whatever runs, the same comes of them."""
 WITHIN = 0.02
 """How near each joint must come, in rad or m."""
+ARRIVAL_S = 120.0
 
 
 def rows_of(*pages: str) -> list[tuple[str, Row]]:
@@ -140,9 +142,11 @@ class Walk:
 
     def _wait_for_joints(self, step: Step) -> None:
         condition = ARRIVAL.format(wanted=list(step.reaches), within=WITHIN)
-        line = f'arm topic echo {step.states} --once --filter "{condition}"'
-        code, output = self._ended(line)
-        assert code == 0, output
+        line = f"arm topic echo {step.states} --once"
+        code, output = self._ended(f'{line} --filter "{condition}" --timeout {ARRIVAL_S:g}')
+        if code != 0:
+            now = self._ended(f"{line} --timeout {ARRIVAL_S:g}")[1]
+            pytest.fail(f"not at {step.reaches}: {output}\nbut:\n{now}")
 
     def end(self) -> None:
         """End all that runs."""

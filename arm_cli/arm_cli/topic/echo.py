@@ -81,11 +81,16 @@ def echo(options: argparse.Namespace) -> None:
         )
         listener.subscribe(class_, printer.take, profile, raw=options.raw)
         start_s = time.monotonic()
-        session.wait_until(lambda: printer.count > 0, listener.silence, options.timeout)
+        session.wait_until(
+            lambda: printer.count > 0,
+            lambda: printer.refusal(listener.topic) or listener.silence(),
+            options.timeout,
+        )
         rest_s = None if options.timeout is None else options.timeout + start_s - time.monotonic()
         session.wait_until(printer.is_done, timeout_s=rest_s)
     if printer.count == 0:
-        raise UnansweredError(f"no message on {listener.topic} within {options.timeout:g} s")
+        nothing = printer.refusal(listener.topic) or f"no message on {listener.topic}"
+        raise UnansweredError(f"{nothing} within {options.timeout:g} s")
 
 
 def _printer(options: argparse.Namespace) -> "MessagePrinter":
@@ -117,6 +122,7 @@ class MessagePrinter:
 
     Attributes:
         count: the number of messages printed so far.
+        refused: the number of messages that the filter did not let pass.
     """
 
     style: str
@@ -127,6 +133,7 @@ class MessagePrinter:
     with_info: bool
     limit: int | None
     count: int = field(default=0, init=False)
+    refused: int = field(default=0, init=False)
 
     def check(self, message_class: type) -> None:
         """Check the field against the type.
@@ -149,6 +156,15 @@ class MessagePrinter:
         if self.accepts(part):
             self._print(part, info if self.with_info else {})
             self.count += 1
+        else:
+            self.refused += 1
+
+    def refusal(self, topic: str) -> str:
+        """Return a notice that no message has passed the filter, "" if none has arrived."""
+        if not self.refused:
+            return ""
+        messages = "1 message" if self.refused == 1 else f"{self.refused} messages"
+        return f"{messages} on {topic}, but none for which --filter holds"
 
     def _print(self, part: Any, info: dict[str, Any]) -> None:
         from arm_node.messages.text import is_message, to_csv, to_plain, to_yaml

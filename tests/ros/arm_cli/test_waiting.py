@@ -86,6 +86,23 @@ def test_a_type_that_no_publisher_of_the_topic_has(arm: Any, client: Any) -> Non
 
 
 @pytest.mark.usefixtures("notices_come_late")
+def test_messages_that_a_filter_refuses_are_not_silence(arm: Any, client: Any) -> None:
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from std_msgs.msg import String
+
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    publisher = client.node.create_publisher(String, "/words", kept)
+    publisher.publish(String(data="no"))
+    try:
+        line = ("topic", "echo", "/words", "--filter", "m.data == 'yes'", "--timeout", "5")
+        said = arm(*line, code=1)
+    finally:
+        client.node.destroy_publisher(publisher)
+    refused = "1 message on /words, but none for which --filter holds"
+    assert said.err == f"{refused}\narm topic echo: {refused} within 5 s\n"
+
+
+@pytest.mark.usefixtures("notices_come_late")
 def test_silence_beside_another_user_is_explained(arm: Any, client: Any, monkeypatch: Any) -> None:
     monkeypatch.setattr("arm_cli.ros.listeners.other_users", lambda domain: ["anna"])
     publisher = client.node.create_publisher(JointState, "/states", 10)
