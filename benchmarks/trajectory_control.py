@@ -13,10 +13,11 @@ import psutil
 
 CONTROLLERS = (
     harness.CONTROLLERS.replace(
-        "position_controller:\n      type",
-        "joint_trajectory_controller:\n"
-        "      type: joint_trajectory_controller/JointTrajectoryController\n"
-        "    position_controller:\n      type",
+        # The launch starts the first that can have the joints; the client then loads the other.
+        "position_controllers/JointGroupPositionController\n",
+        "position_controllers/JointGroupPositionController\n"
+        "    joint_trajectory_controller:\n"
+        "      type: joint_trajectory_controller/JointTrajectoryController\n",
     )
     + """\
 joint_trajectory_controller:
