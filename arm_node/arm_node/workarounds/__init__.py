@@ -33,9 +33,8 @@ MuJoCo 4.0 and EmPy 4. `serialized_goals` is beside its controller, in
 its `interface_build`.
 
 All but `deadlocked_end`, which is for Kilted alone, are made for Jazzy, and all are on with Kilted,
-too. Most were measured there: the fault exists, or a figure gets better by a tenth. It is open
-whether `signs_of_life` and `serialized_goals` pay there, and whether anything there removes the
-ports that `lost_ports` looks for. `benchmarks/RESULTS.md` has the figures of both.
+too, as measured there: the fault exists, or a figure gets better by a tenth.
+`benchmarks/RESULTS.md` has the figures of both.
 
 [6535]: https://github.com/eProsima/Fast-DDS/issues/6535
 [6502]: https://github.com/eProsima/Fast-DDS/issues/6502
