@@ -30,6 +30,7 @@ from arm_viewer.panels.robot_panel import RobotPanel
 from arm_viewer.panels.status_panel import StatusPanel
 from arm_viewer.panels.time_bar import TimeBar
 from arm_viewer.panels.timeline import TimelinePanel
+from arm_viewer.panels.view_from_camera import ViewFromCamera
 from arm_viewer.panels.world_panel import WorldPanel
 from arm_viewer.recordings.player import Player
 from arm_viewer.recordings.recorder import Recorder
@@ -117,14 +118,15 @@ async def _build(
     left.dock_left()
     left.set_width(LEFT_PANEL_WIDTH_PX)
     pictures = PicturePanel(server.channel)
-    pictures.build(gui)
     cameras = {"Cameras": (CameraPanel(send, is_watched, left, pictures.wanted),)}
-    plots = PlotFeed(server.channel, send)
-    plots.build(gui)
-    observations = Observations(server.channel, send)
-    observations.build(gui)
-    calls = Calls(server.channel, send)
-    calls.build(gui)
+    channelled = (
+        ViewFromCamera(server.channel, frames),
+        PlotFeed(server.channel, send),
+        Observations(server.channel, send),
+        Calls(server.channel, send),
+    )
+    for panel in (pictures, *channelled):
+        panel.build(gui)
     tabs = gui.add_tab_group()
     planning = PlanningPanel(server.scene, frames, send, tabs.add_tab)
     planning.build(gui)
@@ -135,9 +137,7 @@ async def _build(
         *_build_tabs(main, gui, tabs.add_tab),
         pictures,
         *_build_tabs(cameras, gui, left.add_tab),
-        plots,
-        observations,
-        calls,
+        *channelled,
         planning,
     )
 

@@ -23,6 +23,7 @@ SCRIPTS = (
     "calls.js",
     "world.js",
     "picture.js",
+    "view_from.js",
     "keys.js",
 )
 READ_ONLY_SCRIPTS = ("read_only.js",)
@@ -36,9 +37,10 @@ STYLES = (
     "calls.css",
     "world.css",
     "picture.css",
+    "view_from.css",
     "timeline.css",
 )
-PARTS = ("time_bar.html", "dock.html", "picture.html", "timeline.html")
+PARTS = ("time_bar.html", "dock.html", "picture.html", "view_from.html", "timeline.html")
 _ICON = re.compile(r'<link\s+rel="icon"\s[^>]*>', re.DOTALL)
 _TITLE = re.compile(r"<title>[^<]*</title>")
 _HEAD_END, _BODY = "</head>", "<body>"

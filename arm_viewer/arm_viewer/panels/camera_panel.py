@@ -16,6 +16,7 @@ JPEG_QUALITY = 60
 """At this size it looks like 75, which takes a third more bytes."""
 MAX_PIXELS_WIDE = 480
 """Wider images are shrunk, because they are shown in a narrow column and encoding takes time."""
+BUTTON = '<button type="button" class="arm-camera-button" data-arm-reads'
 NOTHING = np.zeros((3, 4, 3), dtype=np.uint8)
 
 
@@ -77,9 +78,9 @@ class _Camera:
             )
             self._problem = gui.add_html("", visible=False)
             gui.add_html(
-                f'<button type="button" class="arm-full-size" data-arm-reads '
-                f'data-picture="{escape(topic)}">'
-                "Full size</button>"
+                f'{BUTTON} data-picture="{escape(topic)}">Full size</button>'
+                f'{BUTTON} data-view-from="{escape(topic)}" '
+                'title="the 3D view as this camera sees it">Look from here</button>'
             )
         self._picture: Picture | None = None
 

@@ -148,6 +148,45 @@ def test_the_robot_moves_by_frames_of_the_pages_own_channel(visitor, command):
     assert visitor.errors == []
 
 
+EYE = """() => {
+  const { camera } = window.__viserMutable;
+  return [...camera.position.toArray(), ...camera.up.toArray(), camera.fov];
+}"""
+
+
+def test_a_browser_looks_from_a_camera_and_back(visitor, new_visitor):
+    visitor.wait_until(lambda: visitor.drawn()["triangles"] > 0, "the robot is drawn")
+    other = new_visitor()
+    other.wait_until(lambda: other.drawn()["triangles"] > 0, "the robot is drawn there, too")
+
+    def is_at(eye) -> bool:
+        return np.allclose(other.page.evaluate(EYE), eye, atol=1e-3)
+
+    # A view that its user has chosen is not fitted again.
+    other.step_back()
+    seen: list[list[float]] = [[], []]
+
+    def rests() -> bool:
+        seen.append(other.page.evaluate(EYE))
+        other.page.wait_for_timeout(500)
+        return seen[-1] == seen[-2] == seen[-3]
+
+    other.wait_until(rests, "the view rests")
+    eye, free = seen[-1], visitor.page.evaluate(EYE)
+    other.click("Look from here")
+    other.page.get_by_text("View from /videocamera").wait_for()
+    # Where the URDF puts the camera beside the arm, in three.js's axes.
+    other.wait_until(
+        lambda: np.allclose(other.page.evaluate(EYE)[:3], (0.0, 0.5313, -0.75), atol=1e-3),
+        "the view is that of the camera",
+    )
+    assert np.allclose(visitor.page.evaluate(EYE), free, atol=1e-3), "another browser stays"
+    other.click("Free camera")
+    other.wait_until(lambda: is_at(eye), "it is back")
+    assert other.errors == []
+    other.page.close()
+
+
 def test_a_slider_moves_the_simulated_arm(visitor, positions):
     assert positions()["j0"] < 1.0
 
