@@ -1,6 +1,7 @@
 """The myCobot picks cylinders that it knows from its camera alone."""
 
 import contextlib
+from functools import partial
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from arm_controller.pick_plan import CLOSED, WIDE_OPEN, JointPath, PickTask, Pla
 from arm_description import expand_xacro, resolve_uri
 from arm_description.transforms import quaternion_from_rpy
 from arm_node.rigid_transform import RigidTransform, rpy_from_rows
+from arm_planning.collision.seen_robot import SeenRobot
 from arm_planning.perception.table import SeenThing, find_things
 from arm_planning.perception.testing import noisy
 from arm_sim import GoalError, JointTrajectory, Simulation
@@ -16,6 +18,8 @@ from arm_sim import GoalError, JointTrajectory, Simulation
 PICKS = 20
 NOISE_AT_1M = 0.002
 LIFT_M = 0.05
+OPTICAL = "camera_head_depth_optical_frame"
+POSITIONS = ([0.0] * 6, [0.5, -0.6, -0.5, 0.2, 0.0, 0.5], [1.2, 0.4, -1.2, 0.6, 0.8, -1.0])
 XACRO = "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro"
 CYLINDER = """
 <mujoco><worldbody><body name="thing">
@@ -37,14 +41,21 @@ def put_somewhere(sim: Simulation, random: np.random.Generator) -> None:
     sim.run(0.2)
 
 
-def seen(sim: Simulation, random: np.random.Generator) -> tuple[SeenThing, ...]:
+def pose_in(sim: Simulation, frame: str, link: str) -> RigidTransform:
+    matrix = sim.pose(link, frame)
+    turn = quaternion_from_rpy(rpy_from_rows(matrix.tolist()))
+    return RigidTransform(tuple(matrix[:3, 3].tolist()), tuple(turn.tolist()))
+
+
+def seen(
+    sim: Simulation, random: np.random.Generator, robot: SeenRobot | None = None
+) -> tuple[SeenThing, ...]:
     camera = sim.camera("camera_head")
     depth = camera.depth()
     depth[~np.isfinite(depth)] = np.nan
     points = noisy(depth[..., None] * camera.rays(), random, NOISE_AT_1M)
-    frame = sim.pose("camera_head_depth_optical_frame", "base_link")
-    turn = quaternion_from_rpy(rpy_from_rows(frame.tolist()))
-    return find_things(points, RigidTransform(tuple(frame[:3, 3]), tuple(turn))).things
+    apart = robot.pixels(points, partial(pose_in, sim, OPTICAL)) if robot else None
+    return find_things(points, pose_in(sim, "base_link", OPTICAL), apart).things
 
 
 def follow(sim: Simulation, path: JointPath) -> None:
@@ -75,6 +86,17 @@ def test_the_robot_itself_and_what_is_no_cylinder_are_never_whole_things():
         cylinders = np.array([sim.pose(name)[:2, 3] for name in ("red_cylinder", "coke_can")])
     whole = np.array([thing.pose.position[:2] for thing in things if not thing.partial])
     assert whole == pytest.approx(cylinders, abs=5e-3)
+
+
+def test_the_robot_is_cut_out_wherever_it_is():
+    arguments = {"use_camera": "true"}
+    robot = SeenRobot(expand_xacro(resolve_uri(XACRO), arguments))
+    random = np.random.default_rng(0)
+    with Simulation("mycobot", arguments=arguments, world="empty", render_backend="raycast") as sim:
+        for positions in POSITIONS:
+            sim.follow("arm_controller", JointTrajectory([2.0], [positions]))
+            assert any(thing.pixels > 100 for thing in seen(sim, random))
+            assert seen(sim, random, robot) == ()
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """Which points are on or in bodies: a robot's links, and what is attached to it or in the scene."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
+from operator import itemgetter
 
 import mujoco
 import numpy as np
@@ -15,6 +16,8 @@ from arm_planning.scene.scene import PlanningScene
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+Body = tuple[RigidTransform, tuple[Geom, ...]]
+Ball = tuple[Array, float]
 MOST_HULLS = 500
 
 
@@ -41,33 +44,53 @@ class BodyFilter:
         Raises:
             PlanningError: a shape cannot be used.
         """
-        found = np.zeros(len(points), bool)
-        for pose, geoms in self._bodies(scene):
-            for geom in geoms:
-                position, (w, x, y, z) = geom.placement
-                placed = pose.then(RigidTransform(position, (x, y, z, w)))
-                matrix = np.array(placed.matrix())
-                rest = np.flatnonzero(~found)
-                local = (points[rest] - matrix[:3, 3]) @ matrix[:3, :3]
-                near = np.flatnonzero(self._near(geom, local))
-                found[rest[near]] = self._in_shape(geom, local[near])
+        links = LinkPoses(self._model, scene.positions)
+        found = self.in_links(points, links.__getitem__)
+        return self._add(found, points, self._others(scene, links))
+
+    def in_links(self, points: Array, pose_of: Callable[[str], RigidTransform | None]) -> Mask:
+        """Return which points (n, 3) are in the robot's links, (n,).
+
+        Args:
+            points: in any frame.
+            pose_of: gives a link's pose in that frame; a link without one is left out.
+
+        Raises:
+            PlanningError: a shape cannot be used.
+        """
+        bodies = (
+            (pose, link_geoms(link, self._meshes))
+            for link in self._model.robot.links
+            if link.collisions and (pose := pose_of(link.name)) is not None
+        )
+        return self._add(np.zeros(len(points), bool), points, bodies)
+
+    def _add(self, found: Mask, points: Array, bodies: Iterable[Body]) -> Mask:
+        """Return which points have been found or are in one of the bodies."""
+        columns = np.ascontiguousarray(points.T)
+        for pose, geoms in filter(itemgetter(1), bodies):
+            placed = [np.array(_placed(pose, geom).matrix()) for geom in geoms]
+            balls = [self._ball(*one) for one in zip(geoms, placed, strict=True)]
+            rest = np.flatnonzero(_near(columns, _around(balls)) & ~found)
+            some, within = columns[:, rest], np.zeros(len(rest), bool)
+            for geom, matrix, ball in zip(geoms, placed, balls, strict=True):
+                near = np.flatnonzero(_near(some, ball) & ~within)
+                local = (some[:, near].T - matrix[:3, 3]) @ matrix[:3, :3]
+                within[near] = self._in_shape(geom, local)
+            found[rest[within]] = True
         return found
 
-    def _bodies(self, scene: PlanningScene) -> Iterable[tuple[RigidTransform, tuple[Geom, ...]]]:
-        links = LinkPoses(self._model, scene.positions)
-        for link in self._model.robot.links:
-            if link.collisions:
-                yield links[link.name], link_geoms(link, self._meshes)
+    def _others(self, scene: PlanningScene, links: LinkPoses) -> Iterable[Body]:
         for body in scene.attached.values():
             pose = links[body.link].then(body.object.pose)
             yield pose, object_geoms(body.object, self._meshes)
         for thing in scene.objects.values():
             yield thing.pose, object_geoms(thing, self._meshes)
 
-    def _near(self, geom: Geom, local: Array) -> Mask:
-        """Return which points are in a ball about a shape."""
+    def _ball(self, geom: Geom, matrix: Array) -> Ball:
+        """Return the middle and the radius of a ball about a shape at a place."""
         if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
-            return np.ones(len(local), bool)
+            return matrix[:3, 3], np.inf
         if geom.corners is None:
             middle, radius = np.zeros(3), float(np.linalg.norm(geom.size))
             if geom.type == mujoco.mjtGeom.mjGEOM_CAPSULE:
@@ -76,7 +99,7 @@ class BodyFilter:
             middle = geom.corners.mean(axis=0)
             radius = float(np.linalg.norm(geom.corners - middle, axis=1).max())
         reach = self._scale * radius + 2 * self._padding_m
-        return ((local - middle) ** 2).sum(axis=1) <= reach**2
+        return matrix[:3, :3] @ middle + matrix[:3, 3], reach
 
     def _in_shape(self, geom: Geom, local: Array) -> Mask:
         x, y, z = self._scale * np.array(geom.size) + self._padding_m
@@ -108,3 +131,20 @@ class BodyFilter:
             # The corners are kept, so that no other array gets their id.
             self._hulls[id(corners)] = (corners, convex_hull(corners))
         return self._hulls[id(corners)][1]
+
+
+def _placed(pose: RigidTransform, geom: Geom) -> RigidTransform:
+    position, (w, x, y, z) = geom.placement
+    return pose.then(RigidTransform(position, (x, y, z, w)))
+
+
+def _around(balls: Sequence[Ball]) -> Ball:
+    """Return a ball around others."""
+    middle = np.mean([middle for middle, _ in balls], axis=0)
+    return middle, max(float(np.linalg.norm(each - middle)) + radius for each, radius in balls)
+
+
+def _near(columns: Array, ball: Ball) -> Mask:
+    """Return which points (3, n) are in a ball, (n,)."""
+    (x, y, z), radius = ball
+    return (columns[0] - x) ** 2 + (columns[1] - y) ** 2 + (columns[2] - z) ** 2 <= radius**2

@@ -29,7 +29,9 @@ NEIGHBOURS = ((0, 1), (0, -1), (1, 0), (-1, 0))
 def evidence_of(
     view: PlaneView, window: Window, own: Mask, top: Mask, level: float, others: Mask
 ) -> tuple[OutlineEvidence, bool]:
-    """Return what is seen of a thing, and whether something nearer, or the picture, cuts it off.
+    """Return what is seen of a thing, and whether something, or the picture's edge, cuts it off.
+
+    Something nearer does, and so does what is `apart` where the thing may go on in it.
 
     Args:
         view: the view.
@@ -43,7 +45,12 @@ def evidence_of(
     distance = float(np.median(depths[own]))
     noise = view.noise(distance)
     step = STEP_M + 3 * noise
-    outside = view.outside[window]
+    outside, apart = view.outside[window], view.apart[window]
+    centre = view.spots(window, own).mean(axis=0)
+    steepness = max(view.steepness(centre, level), FLATTEST)
+    size = view.pixel * distance
+    # As far as neighbours on a level top are apart in depth.
+    going_on = step + size * hypot(1, 1 / steepness)
     cut, covering = False, 0
     rims: list[Array] = []
     edges: list[Array] = []
@@ -52,7 +59,7 @@ def evidence_of(
         there = (here[0] + rows, here[1] + columns)
         cut |= bool(outside[there].any())
         farther = depths[there] - depths[here]
-        covered = others[there] & (farther < -step)
+        covered = (others[there] & (farther < -step)) | (apart[there] & (farther < going_on))
         covering += int(covered.sum())
         # The outline is between the thing's outermost pixel and its neighbour.
         between = (0.5 * (rays[here] + rays[there])).astype(np.float64)
@@ -62,9 +69,6 @@ def evidence_of(
     rim = _some(np.concatenate(rims))
     wall = own & ~top & (view.heights[window] < level - 2 * view.level_noise(distance, level))
     walls = _some(view.spots(window, wall))
-    centre = view.spots(window, own).mean(axis=0)
-    steepness = max(view.steepness(centre, level), FLATTEST)
-    size = view.pixel * distance
     evidence = OutlineEvidence(
         walls=walls,
         wall_noise=noise / hypot(1, steepness) + WALL_FLOOR_M,

@@ -9,6 +9,7 @@ from arm_planning.errors import PerceptionError
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]
+Mask = NDArray[np.bool_]
 
 SAMPLES = 4000
 TRIPLES = 200
@@ -42,19 +43,20 @@ class SupportPlane:
         return points @ np.array(self.normal, np.float32) + np.float32(self.distance)
 
 
-def find_support_plane(points: Picture, up: Array) -> SupportPlane:
+def find_support_plane(points: Picture, up: Array, apart: Mask) -> SupportPlane:
     """Return the level plane below the camera that has the most points.
 
     Args:
         points: (height, width, 3), in m, nan where nothing is seen; z looks ahead.
         up: unit vector, in the points' frame.
+        apart: (height, width), pixels that are left out.
 
     Raises:
         PerceptionError: fewer points than a plane needs, or no level plane among them.
     """
     step = max(1, int((points.shape[0] * points.shape[1] / SAMPLES) ** 0.5))
-    some = points[step // 2 :: step, step // 2 :: step].reshape(-1, 3).astype(np.float64)
-    some = some[np.isfinite(some[:, 2])]
+    grid = (slice(step // 2, None, step),) * 2
+    some = points[grid][~apart[grid] & np.isfinite(points[grid][..., 2])].astype(np.float64)
     if len(some) < 3:
         raise PerceptionError("the depth camera sees no points")
     normal, distance = _best_of_triples(some, up)

@@ -69,19 +69,22 @@ class SeenTable:
     things: tuple[SeenThing, ...]
 
 
-def find_things(points: Picture, camera: RigidTransform) -> SeenTable:
+def find_things(points: Picture, camera: RigidTransform, apart: Mask | None = None) -> SeenTable:
     """Return what stands on the largest level plane, from the largest to the smallest picture.
 
     Args:
         points: (height, width, 3) in the optical frame (x right, y down, z ahead), in m; nan
             where nothing is seen.
         camera: pose of the optical frame in one whose z axis is up.
+        apart: (height, width), pixels of what is neither a thing nor the plane, such as the robot;
+            what it may hide is returned as partial.
 
     Raises:
         PerceptionError: there is no level plane below the camera.
     """
     rotation = np.array(camera.matrix())[:3, :3]
-    plane = find_support_plane(points, rotation[2])
+    apart = np.zeros(points.shape[:2], bool) if apart is None else apart
+    plane = find_support_plane(points, rotation[2], apart)
     normal = np.array(plane.normal)
     sideways = np.cross(normal, (0, 0, 1) if abs(normal[2]) < 0.9 else (0, 1, 0))
     sideways /= np.linalg.norm(sideways)
@@ -89,9 +92,9 @@ def find_things(points: Picture, camera: RigidTransform) -> SeenTable:
     heights = plane.heights(points)
     noise = 5 * plane.noise * plane.distance * points[..., 2]
     raised = _without_specks(heights > LEAST_HEIGHT_M + noise) & (heights > LEAST_HEIGHT_M)
-    if not raised.any():
+    if not (raised & ~apart).any():
         return SeenTable(plane, ())
-    view, raised = view_of(points, plane, axes, raised)
+    view, raised = view_of(points, plane, axes, raised & ~apart, raised & apart)
     found = sorted(_peeled(view, raised), key=lambda one: -one.pixels)
     return SeenTable(plane, tuple(_placed(one, plane, axes, camera) for one in found))
 

@@ -10,7 +10,7 @@ from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import PerceptionError
 from arm_planning.perception.support_plane import Picture
 from arm_planning.perception.table import SeenTable, SeenThing, find_things
-from arm_planning.perception.view import Array
+from arm_planning.perception.view import Mask
 from arm_planning.scene.objects import CollisionObject, PlacedShape
 
 SHAPES = {"box": "[x, y, z]", "cylinder": "[height, radius]"}
@@ -95,7 +95,12 @@ class SeenObjects:
 
 
 def objects_in_view(
-    points: Picture, camera: RigidTransform, crop: Crop, support_name: str, thickness_m: float
+    points: Picture,
+    camera: RigidTransform,
+    crop: Crop,
+    support_name: str,
+    thickness_m: float,
+    robot: Mask | None = None,
 ) -> SeenObjects:
     """Return the objects that a depth camera sees on the largest level plane.
 
@@ -105,6 +110,7 @@ def objects_in_view(
         crop: where to look.
         support_name: id of the surface.
         thickness_m: of the surface, which is seen from above only.
+        robot: (height, width), the pixels that show the robot.
 
     Raises:
         PerceptionError: there are no points in the crop, or no level plane among them.
@@ -113,15 +119,15 @@ def objects_in_view(
     placed = points @ matrix[:3, :3].T.astype(np.float32) + matrix[:3, 3].astype(np.float32)
     # Written so that nan is outside.
     inside = np.all((placed >= np.array(crop.low)) & (placed <= np.array(crop.high)), axis=2)
-    points = np.where(np.expand_dims(inside, 2), points, np.float32(np.nan))
-    table = find_things(points, camera)
+    apart = ~inside if robot is None else ~inside | robot
+    table = find_things(points, camera, apart)
     things: list[tuple[CollisionObject, SeenThing]] = []
     for thing in table.things:
         number = sum(other.kind == thing.kind for _, other in things)
         shape = Box(_sides(thing)) if thing.kind == "box" else Cylinder(*_round(thing))
         each = CollisionObject(f"{thing.kind}_{number}", thing.pose, (PlacedShape(shape),))
         things.append((each, thing))
-    surface = _surface(table, points, placed.astype(np.float64))
+    surface = placed[_on_surface(table, points) & ~apart].astype(np.float64)
     low, high = surface.min(axis=0), surface.max(axis=0)
     x, y, _ = (0.5 * (low + high)).tolist()
     top = float(np.median(surface[:, 2]))
@@ -131,12 +137,11 @@ def objects_in_view(
     return SeenObjects(CollisionObject(support_name, pose, (PlacedShape(box),)), tuple(things))
 
 
-def _surface(table: SeenTable, points: Picture, placed: Array) -> Array:
-    """Return the points of the support, (n, 3)."""
+def _on_surface(table: SeenTable, points: Picture) -> Mask:
+    """Return which points are on the support."""
     noise = table.plane.noise * table.plane.distance * points[..., 2]
     with np.errstate(invalid="ignore"):
-        on = np.abs(table.plane.heights(points)) < PLANE_NOISE * noise + PLANE_FLOOR_M
-    return placed[on]
+        return np.abs(table.plane.heights(points)) < PLANE_NOISE * noise + PLANE_FLOOR_M
 
 
 def _factor(thing: SeenThing, target: TableTarget) -> float:

@@ -6,10 +6,9 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.perception.support_plane import Picture, SupportPlane
+from arm_planning.perception.support_plane import Mask, Picture, SupportPlane
 
 Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Window = tuple[slice, slice]
 """Rows and columns of a part of the picture."""
 
@@ -24,6 +23,7 @@ class PlaneView:
         depths: along the camera's axis, in m.
         rays: of depth 1, through all pixels, (h, w, 3).
         outside: pixels beyond the picture.
+        apart: raised pixels of what is not looked for, but may hide a thing.
     """
 
     plane: SupportPlane
@@ -31,6 +31,7 @@ class PlaneView:
     depths: Picture
     rays: Picture
     outside: Mask
+    apart: Mask
 
     @property
     def pixel(self) -> float:
@@ -60,7 +61,7 @@ class PlaneView:
 
 
 def view_of(
-    points: Picture, plane: SupportPlane, axes: Array, raised: Mask
+    points: Picture, plane: SupportPlane, axes: Array, raised: Mask, apart: Mask
 ) -> tuple[PlaneView, Mask]:
     """Return the part of a camera's view with all raised pixels and one pixel around, and them.
 
@@ -69,6 +70,7 @@ def view_of(
         plane: the support in that frame.
         axes: rows x, y, z of the plane's frame in the camera's.
         raised: (height, width), True somewhere.
+        apart: (height, width), see `PlaneView`.
     """
     window: list[slice] = []
     margins: list[tuple[int, int]] = []
@@ -86,7 +88,8 @@ def view_of(
         _add_rays(rays, missing)
     outside = np.pad(np.zeros(raised[rows, columns].shape, bool), margins, constant_values=True)
     turned: Picture = (rays @ axes.T).astype(np.float32)
-    view = PlaneView(plane, plane.heights(part), depths, turned, outside)
+    apart = np.pad(apart[rows, columns], margins)
+    view = PlaneView(plane, plane.heights(part), depths, turned, outside, apart)
     return view, np.pad(raised[rows, columns], margins)
 
 

@@ -13,10 +13,12 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Image, PointCloud2
 
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_planning.collision.seen_robot import PADDING_M
 from arm_planning.errors import PerceptionError
 from arm_planning.perception.table_objects import Crop, TableTarget, objects_in_view
 from arm_planning.ros.answering import offer_service
 from arm_planning.ros.point_clouds import points_of
+from arm_planning.ros.robot_in_view import TOPIC, RobotInView
 from arm_planning.ros.scene_messages import object_message
 from arm_planning.ros.transform_reader import TransformReader
 
@@ -58,7 +60,14 @@ class TableServer:
             raise PerceptionError(
                 f"min_surface_thickness is {self._thickness_m} m; it is above 0 and below 1 m"
             )
+        padding_m = _number(node, "robot_padding", PADDING_M)
+        if not 0.0 <= padding_m < 1.0:
+            raise PerceptionError(
+                f"robot_padding is {padding_m} m; it is not negative and below 1 m"
+            )
         self._transforms = TransformReader(node)
+        self._robot = RobotInView(node, self._transforms, padding_m)
+        self._without_robot = False
         offer_service(node, GetPlanningScene, SERVICE, self._serve)
 
     def _serve(
@@ -78,15 +87,16 @@ class TableServer:
         """Fill the answer as far as possible."""
         cloud, image = self._sensed()
         answer.full_cloud, answer.rgb_image = cloud, image
-        camera = self._transforms.pose(cloud.header.frame_id, self._frame)
+        header = cloud.header
+        camera = self._transforms.pose(header.frame_id, self._frame, header.stamp)
         if camera is None:
             raise PerceptionError(
-                f"no transforms on /tf lead from '{cloud.header.frame_id}', the frame of the "
+                f"no transforms on /tf lead from '{header.frame_id}', the frame of the "
                 f"points, to '{self._frame}'"
             )
-        seen = objects_in_view(
-            points_of(cloud), camera, self._crop, self._support, self._thickness_m
-        )
+        points = points_of(cloud)
+        robot = self._robot.pixels(header, points)
+        seen = objects_in_view(points, camera, self._crop, self._support, self._thickness_m, robot)
         objects = [object_message(each, self._frame) for each in seen.objects]
         answer.scene_world = PlanningSceneWorld(collision_objects=objects)
         answer.support_surface_id = self._support
@@ -94,7 +104,7 @@ class TableServer:
         LOGGER.info("the target is %s", answer.target_object_id)
 
     def _sensed(self) -> tuple[PointCloud2, Image]:
-        """Return the latest points and picture; wait for the first.
+        """Return the latest points and picture; wait for the first, and for the robot.
 
         Raises:
             PerceptionError: there are none.
@@ -105,9 +115,13 @@ class TableServer:
                 for raw, _ in self._polled.take(subscription, 1):
                     kind = subscription.msg_type
                     self._latest[kind] = deserialize_message(raw, kind)
-            if len(self._latest) == 2:
+            is_late = waited_s >= SENSORS_S
+            if not self._robot.is_heard() and is_late and not self._without_robot:
+                LOGGER.warning("nobody publishes %s: the robot is not cut out", TOPIC)
+                self._without_robot = True
+            if len(self._latest) == 2 and (self._without_robot or self._robot.is_heard()):
                 return self._latest[PointCloud2], self._latest[Image]
-            if waited_s >= SENSORS_S or self._wait(POLL_S):
+            if is_late or self._wait(POLL_S):
                 raise PerceptionError(
                     "Point cloud or RGB image data not available: nothing has come on "
                     f"{self._topics}; does the robot run with use_camera:=true?"

@@ -2,7 +2,7 @@
 
 import threading
 
-from geometry_msgs.msg import TransformStamped
+from builtin_interfaces.msg import Time
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message
@@ -10,6 +10,8 @@ from tf2_msgs.msg import TFMessage
 
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.rigid_transform import RigidTransform
+from arm_planning.ros.convert import NANOSECONDS
+from arm_planning.scene.transform_history import TransformHistory
 
 TRANSFORMS_TAKEN = 200
 
@@ -21,39 +23,38 @@ class TransformReader:
         """Subscribe."""
         self._polled = PolledSubscriptions(node)
         latched = QoSProfile(depth=TRANSFORMS_TAKEN, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self._subscriptions = (
-            self._polled.subscribe(TFMessage, "/tf_static", latched),
-            self._polled.subscribe(TFMessage, "/tf", QoSProfile(depth=TRANSFORMS_TAKEN)),
-        )
-        self._latest: dict[str, TransformStamped] = {}
+        self._static = self._polled.subscribe(TFMessage, "/tf_static", latched)
+        self._moving = self._polled.subscribe(TFMessage, "/tf", QoSProfile(depth=TRANSFORMS_TAKEN))
+        self._history = TransformHistory()
         self._lock = threading.Lock()
 
-    def pose(self, name: str, base: str) -> RigidTransform | None:
-        """Return a frame's pose in another one; None if no transforms connect them."""
-        with self._lock:
-            for subscription in self._subscriptions:
-                for raw, _ in self._polled.take(subscription, TRANSFORMS_TAKEN):
-                    message: TFMessage = deserialize_message(raw, TFMessage)
-                    for transform in message.transforms:
-                        self._latest[transform.child_frame_id.lstrip("/")] = transform
-            ours = self._in_root(base.lstrip("/"))
-            theirs = self._in_root(name.lstrip("/"))
-        if ours[0] != theirs[0]:
-            return None
-        return ours[1].inverse().then(theirs[1])
+    def pose(self, name: str, base: str, stamp: Time | None = None) -> RigidTransform | None:
+        """Return a frame's pose in another one; None if no transforms connect them.
 
-    def _in_root(self, name: str) -> tuple[str, RigidTransform]:
-        """Return the root above a frame, and the frame's pose in it."""
-        pose, passed = RigidTransform(), {name}
-        while name in self._latest:
-            stamped = self._latest[name]
+        Args:
+            name: the frame.
+            base: the other one.
+            stamp: when, as far as the last transforms go back; None for the last.
+        """
+        stamp_ns = None if stamp is None else stamp.sec * NANOSECONDS + stamp.nanosec
+        with self._lock:
+            for subscription in (self._static, self._moving):
+                for raw, _ in self._polled.take(subscription, TRANSFORMS_TAKEN):
+                    self._hear(deserialize_message(raw, TFMessage), subscription is self._static)
+            return self._history.pose(name.lstrip("/"), base.lstrip("/"), stamp_ns)
+
+    def _hear(self, message: TFMessage, is_static: bool) -> None:
+        for stamped in message.transforms:
             translation, rotation = stamped.transform.translation, stamped.transform.rotation
-            step = RigidTransform(
+            pose = RigidTransform(
                 (translation.x, translation.y, translation.z),
                 (rotation.x, rotation.y, rotation.z, rotation.w),
             )
-            pose, name = step.then(pose), stamped.header.frame_id.lstrip("/")
-            if name in passed:
-                break
-            passed.add(name)
-        return name, pose
+            child, parent = (
+                name.lstrip("/") for name in (stamped.child_frame_id, stamped.header.frame_id)
+            )
+            if is_static:
+                self._history.add_static(child, parent, pose)
+            else:
+                stamp = stamped.header.stamp
+                self._history.add(child, parent, pose, stamp.sec * NANOSECONDS + stamp.nanosec)
