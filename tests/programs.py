@@ -16,6 +16,7 @@ import psutil
 import pytest
 from forked import popen
 
+from arm_node.workarounds.ports import lost_ports
 from arm_sim.bench.processes import LoggedProcess
 
 TIMEOUT_S = 100.0
@@ -103,7 +104,9 @@ class Program(LoggedProcess):
         try:
             code = self.process.wait(timeout_s)
         except subprocess.TimeoutExpired:
-            pytest.fail(f"{self.name} still runs after {timeout_s:g} s:\n{self.output}")
+            lost = lost_ports(f"/proc/{self.process.pid}")
+            deaf = f", and hears nothing, without {lost}" if lost else ""
+            pytest.fail(f"{self.name} still runs after {timeout_s:g} s{deaf}:\n{self.output}")
         self._reader.join(timeout_s)
         print(self.output)  # Shown if the test fails.
         return code

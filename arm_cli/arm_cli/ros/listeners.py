@@ -17,6 +17,7 @@ from arm_cli.ros.qos import MEASURING, matching_profile
 from arm_cli.ros.session import CommandSession
 from arm_node.names import describe_known
 from arm_node.ros_domain import describe_users, other_users
+from arm_node.workarounds.ports import lost_ports
 from launch_py.fast_dds.participants import domain_of
 
 
@@ -85,6 +86,9 @@ class TopicListener:
                 f"waiting for a {self._subscribed} on {self.topic}; "
                 f"its publishers send {', '.join(types)}"
             )
+        if lost := lost_ports():
+            ports = " and ".join(lost)
+            return f"this command hears nothing, because another process removed {ports}; repeat it"
         if types:
             users = other_users(domain_of(os.environ.get("ROS_DOMAIN_ID")) or 0)
             hint = f"; {describe_users(users)}" if users else ""

@@ -114,6 +114,18 @@ def test_silence_beside_another_user_is_explained(arm: Any, client: Any, monkeyp
     assert said.err.startswith(notice)
 
 
+@pytest.mark.usefixtures("notices_come_late")
+def test_a_command_whose_port_was_removed_says_so(arm: Any, client: Any, monkeypatch: Any) -> None:
+    monkeypatch.setattr("arm_cli.ros.listeners.lost_ports", lambda: ["/dev/shm/fastrtps_port1"])
+    publisher = client.node.create_publisher(JointState, "/states", 10)
+    try:
+        said = arm("topic", "echo", "/states", "--once", "--timeout", "3", code=1)
+    finally:
+        client.node.destroy_publisher(publisher)
+    notice = "this command hears nothing, because another process removed /dev/shm/fastrtps_port1"
+    assert said.err.startswith(notice)
+
+
 def test_a_missing_action(arm: Any) -> None:
     said = arm("action", "send_goal", "/no", ACTION, "--timeout", "0.2", code=1)
     assert said.err == "arm action send_goal: action /no has no server (waited 0.2 s)\n"
