@@ -1,8 +1,13 @@
 """What a user writes with pymoveit2; prints the name of each step and its result, a line each."""
 
+import sys
 import time
 
 from pymoveit2 import MoveIt2State, connect
+
+# rclpy notes a goal only after it has sent it, and throws away what is answered before that: on a
+# busy machine the thread of pymoveit2's executor could come between.
+sys.setswitchinterval(1.0)
 
 BOX = {"size": (0.05, 0.05, 0.05), "position": [0.3, 0.3, 0.3], "quat_xyzw": [0.0, 0.0, 0.0, 1.0]}
 
