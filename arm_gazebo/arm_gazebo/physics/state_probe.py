@@ -92,9 +92,10 @@ class StateProbe:
     def _evaluate(
         self, function: Callable[[mujoco.MjModel, mujoco.MjData], None], model: mujoco.MjModel
     ) -> None:
-        disabled, enabled = model.opt.disableflags, model.opt.enableflags
-        model.opt.disableflags = disabled & ~WITHOUT_SENSORS
+        options = model.opt
+        disabled, enabled = options.disableflags, options.enableflags
+        options.disableflags = disabled & ~WITHOUT_SENSORS
         # MuJoCo does not recompute sleeping bodies, which may have moved since the last call.
-        model.opt.enableflags = enabled & ~WITH_SLEEP
+        options.enableflags = enabled & ~WITH_SLEEP
         function(model, self._data)
-        model.opt.disableflags, model.opt.enableflags = disabled, enabled
+        options.disableflags, options.enableflags = disabled, enabled

@@ -168,10 +168,14 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         for _ in range(self._robot.periods):
             parts.tick()
         failures = parts.physics.take_failures()
-        info = {"is_success": bool(self.task.succeeded(self)), **self._shown()}
+        task = self.task
+        succeeded = bool(task.succeeded(self))
+        info = {"is_success": succeeded, **self._shown()}
         if failures:
             info["failure"] = failures[0]
-        reward, terminated = float(self.task.reward(self)), bool(self.task.terminated(self))
+        ends_there = task.terminated is task.succeeded
+        terminated = succeeded if ends_there else bool(task.terminated(self))
+        reward = float(task.reward(self))
         return self._observe(), reward, terminated, bool(failures), info
 
     def move(self, positions: Array, time_s: float) -> None:

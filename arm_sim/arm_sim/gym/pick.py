@@ -45,7 +45,8 @@ def pick_task() -> Task:
 
     def reward(scene: Scene) -> Array:
         distance = np.sqrt((reach(scene) ** 2).sum(axis=-1))
-        height = np.clip(lifted(scene), 0.0, scene.goal["lift"][..., 0])
+        # Not np.clip, which takes many times as long.
+        height = np.minimum(np.maximum(lifted(scene), 0.0), scene.goal["lift"][..., 0])
         return REWARD_PER_M * height - distance
 
     def done(scene: Scene) -> Flags:
