@@ -120,7 +120,8 @@ class LoggedProcess:
         code = self.process.returncode
         # A program that does not handle SIGINT is ended by it.
         is_failure = code not in (0, -signal.SIGINT)
-        return problem or (f"{self.name} ended with exit code {code}" if is_failure else "")
+        ended = f"{self.name} ended with exit code {code}:\n{self.log}" if is_failure else ""
+        return problem or ended
 
     def _read(self) -> None:
         stream = self.process.stdout

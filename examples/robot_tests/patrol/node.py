@@ -1,5 +1,7 @@
 """The node: joint states in, commands out."""
 
+import signal
+
 import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
@@ -33,11 +35,22 @@ class PatrolNode(Node):
         self._was_stuck = self._patrol.is_stuck
 
 
+def interrupt(*_: object) -> None:
+    """Handle Ctrl-C: rclpy ends `spin` by itself.
+
+    A KeyboardInterrupt while rclpy reads a message would become a RuntimeError.
+    """
+    if not rclpy.ok():
+        raise KeyboardInterrupt
+
+
 def main() -> None:
     """Run the node until it is interrupted."""
+    signal.signal(signal.SIGINT, interrupt)
     rclpy.init()
+    node = PatrolNode()
     try:
-        rclpy.spin(PatrolNode())
+        rclpy.spin(node)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except Exception:
@@ -45,6 +58,7 @@ def main() -> None:
         if rclpy.ok():
             raise
     finally:
+        node.destroy_node()
         rclpy.try_shutdown()
 
 

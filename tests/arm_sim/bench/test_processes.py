@@ -72,7 +72,7 @@ def test_children_have_the_names_that_launch_py_gives_them():
 def test_an_exit_code_that_is_not_0_is_told():
     process = python(STUBBORN)
     process.wait_for_line("up", 30.0)
-    assert process.end() == "the program ended with exit code 3"
+    assert process.end() == "the program ended with exit code 3:\nup"
 
 
 def test_a_program_that_ends_by_the_interrupt_is_clean():

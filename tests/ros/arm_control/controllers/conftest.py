@@ -33,6 +33,17 @@ class SentGoal:
         """Wait for the first feedback; the goal is accepted before the controller has it."""
         self.feedback.wait_for(1)
 
+    def wait_until_asked_for(self) -> None:
+        """Wait until the server has the request for this goal's result.
+
+        It reads requests in their order, and answers one for the result of an unknown goal at once.
+        """
+        from rclpy.action.client import ClientGoalHandle
+        from unique_identifier_msgs.msg import UUID
+
+        unknown = ClientGoalHandle(self._caller.action, UUID(uuid=[7] * 16), None)
+        self._caller.await_on_executor(unknown.get_result_async)
+
     def ended(self) -> bool:
         """Return whether there is a result."""
         return self._ended.done()
@@ -56,7 +67,7 @@ class ActionCaller:
         self._client = client
         self._name = name
         self.result_of = client.result_of
-        self._action = client.run(lambda: ActionClient(client.node, action_type, name), name)
+        self.action = client.run(lambda: ActionClient(client.node, action_type, name), name)
         self._servers: set[bytes] = set()
 
     def wait_for_server(self) -> None:
@@ -65,7 +76,7 @@ class ActionCaller:
 
         def found() -> bool:
             self._servers = self._find_servers()
-            ready = self._action.server_is_ready()
+            ready = self.action.server_is_ready()
             return ready and len(self._servers) == 1 and self._servers != known
 
         self._client.wait_until(found, f"a new server of {self._name}")
@@ -78,7 +89,7 @@ class ActionCaller:
         feedback = self._client.collector()
 
         async def carry_out() -> tuple[Any, Any]:
-            handle = await self._action.send_goal_async(
+            handle = await self.action.send_goal_async(
                 self._type.Goal(**fields), lambda message: feedback(message.feedback)
             )
             return handle, handle.get_result_async() if handle.accepted else None
@@ -87,7 +98,7 @@ class ActionCaller:
 
     def send_and_forget(self, **fields: object) -> None:
         """Send a goal and wait for nothing; to be called on the executor's thread."""
-        self._action.send_goal_async(self._type.Goal(**fields))
+        self.action.send_goal_async(self._type.Goal(**fields))
 
     def await_on_executor(self, function: Callable[[], Any]) -> Any:
         """Return what the awaitable results in that a function returns, on the executor."""
@@ -99,7 +110,7 @@ class ActionCaller:
 
     def close(self) -> None:
         """Destroy it, and wait for that."""
-        self._client.run(self._action.destroy, self._name)
+        self._client.run(self.action.destroy, self._name)
 
     def _find_servers(self) -> set[bytes]:
         status = f"{self._name}/_action/status"

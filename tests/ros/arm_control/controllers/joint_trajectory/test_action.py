@@ -120,10 +120,10 @@ def test_a_flood_of_goals_leaves_the_last_one(
 
 
 def test_unloading_by_force_brings_the_result_first(active: Any, send: Any) -> None:
-    # Then the server knows its client whole: who asks for a result unknown to it has none coming.
-    assert send((0.1, THERE)).result() == REACHED
     goal = send((FOR_EVER_S, HERE))
     goal.wait_until_running()
+    # Who has not asked when the action is withdrawn has no result coming.
+    goal.wait_until_asked_for()
     assert active.call("reload_controller_libraries", force_kill=True).ok
     assert goal.result() == (ABORTED, -1, "Current goal cancelled during deactivate transition.")
 
