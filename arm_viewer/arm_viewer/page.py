@@ -102,7 +102,11 @@ async def _build(
     server.channel.on(TYPED_NUMBER, typed_number_handler(joints.take_typed))
     view = FirstView(server)
     world = WorldPanel(server.scene, server.channel, send)
-    robots = RobotPanel(server.scene, frames, poses, view, world.choose)
+
+    def is_watched() -> bool:
+        return bool(server.get_clients())
+
+    robots = RobotPanel(server.scene, frames, poses, view, world.choose, send, is_watched)
     overlays = OverlayPanel(server.scene, frames)
     main = {
         "Robot": (joints, robots, overlays, ConfigPanel(server, robots, view, config)),
@@ -110,10 +114,6 @@ async def _build(
         "Control": (ControllerPanel(send),),
         "System": (GraphPanel(),),
     }
-
-    def is_watched() -> bool:
-        return bool(server.get_clients())
-
     left = gui.add_panel(visible=False)
     left.dock_left()
     left.set_width(LEFT_PANEL_WIDTH_PX)

@@ -77,6 +77,13 @@ class ShowPictures:
 
 
 @dataclass(frozen=True, slots=True)
+class ShowContacts:
+    """Subscribe to contacts, or end that."""
+
+    wanted: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Watch:
     """Collect messages at the full rate, or only now and then while no browser shows them."""
 
@@ -142,6 +149,7 @@ RunRequest = SetPlaying | StepRun | SetSpeed | ResetRun | UseSnapshot
 Request = (
     Watch
     | ShowPictures
+    | ShowContacts
     | PlotCurves
     | ListNumbers
     | CallRequest

@@ -141,6 +141,23 @@ class Marker:
     pose: RigidTransform
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class ContactForces:
+    """Where things touch, and the forces there.
+
+    Attributes:
+        frame: frame of the places.
+        points: in m, shape (n, 3).
+        lines: from each point along its force, as long as the publisher draws it, shape (n, 2, 3).
+        strongest: the strongest contacts in words.
+    """
+
+    frame: str
+    points: NDArray[np.float32]
+    lines: NDArray[np.float32]
+    strongest: tuple[str, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class ListedController:
     """A controller as its manager lists it.
@@ -322,6 +339,8 @@ class Snapshot:
     cameras: Mapping[str, CameraView] = field(default_factory=lambda: MappingProxyType({}))
     markers: Mapping[str, Marker] = field(default_factory=lambda: MappingProxyType({}))
     """The world's shapes, by unique name."""
+    contacts: ContactForces | None = None
+    """None while nobody publishes them, or the page does not show them."""
     displayed: frozenset[str] = frozenset()
     """The namespaces in which the page itself publishes the joint states."""
     controllers: tuple[ListedController, ...] = ()

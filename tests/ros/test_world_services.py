@@ -1,5 +1,6 @@
 """Entities are spawned, moved and deleted in a running simulation without affecting the arm."""
 
+import re
 import threading
 from typing import Any
 
@@ -201,6 +202,34 @@ def test_markers_show_the_world(simulator, client):
     simulator.delete("crate")
     arrays.wait_until(
         lambda m: [k.action for k in of("crate", m)] == [Marker.DELETE], "the crate's end"
+    )
+
+
+def test_contacts_are_markers_while_somebody_subscribes(simulator, client):
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+    from visualization_msgs.msg import Marker, MarkerArray
+
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    arrays = client.subscribe(MarkerArray, "/contact_markers", latched)
+
+    def lines(messages: list) -> list[str]:
+        return messages[-1].markers[1].text.splitlines() if messages else []
+
+    simulator.spawn("crate", CRATE, 3.0, 3.0, 0.1)
+    weight = arrays.wait_until(
+        lambda m: any(re.fullmatch(r"crate::\w+ on world: 9\.8\d? N", t) for t in lines(m)),
+        "the crate rests on the floor",
+    )
+    points, forces = weight[-1].markers
+    assert (points.type, forces.type) == (Marker.SPHERE_LIST, Marker.LINE_LIST)
+    assert points.header.frame_id == "world"
+    assert 2 * len(points.points) == len(forces.points) > 0
+    # The floor pushes up.
+    assert forces.points[1].z > forces.points[0].z
+    simulator.delete("crate")
+    arrays.wait_until(
+        lambda m: {marker.action for marker in m[-1].markers} == {Marker.DELETE},
+        "nothing touches",
     )
 
 

@@ -15,6 +15,7 @@ from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.errors import RequestError
 from arm_gazebo.physics.statistics import SimulationStatistics, StatusReport
 from arm_gazebo.physics_timing import PhysicsTiming
+from arm_gazebo.ros.contact_markers import ContactMarkerPublisher
 from arm_gazebo.ros.entity_services import EntityServices
 from arm_gazebo.ros.run_services import RunServices, SnapshotServices, StepServices
 from arm_gazebo.ros.topic import set_stamp
@@ -137,6 +138,7 @@ class SimulationServer:
         StepServices(self._node, self._thread.executor, loop, control, cameras)
         StatisticsPublisher(self._node, statistics, lambda: physics.time_s, run.on_loop)
         WorldMarkerPublisher(self._node, editor)
+        ContactMarkerPublisher(self._node, editor, physics)
         self._thread.executor.add_node(self._node)
         self._thread.start()
 

@@ -8,8 +8,10 @@ from viser import GuiApi, GuiCheckboxHandle, SceneApi
 
 from arm_description.urdf.robot import Robot
 from arm_node.names import listing
-from arm_viewer.panels.panel import PROBLEM_COLOUR, in_order, note
+from arm_viewer.panels.panel import PROBLEM_COLOUR, in_order, note, show
+from arm_viewer.requests import Send, ShowContacts
 from arm_viewer.scene.cameras import Cameras
+from arm_viewer.scene.contact_lines import ContactLines
 from arm_viewer.scene.first_view import Contents, FirstView
 from arm_viewer.scene.frames import Frames, assumed_transforms, node_name, unknown_joints
 from arm_viewer.scene.markers import Markers
@@ -25,6 +27,8 @@ SWITCHES = {
 }
 
 MAX_LISTED = 8
+NO_CONTACT = "Nothing touches."
+UNKNOWN_CONTACTS = "Nobody publishes contact_markers, or this is a recording."
 STARTUP_WAIT_S = 1.5
 """How long the page waits for a robot's joint states and transforms before it reports a problem."""
 
@@ -55,11 +59,25 @@ class RobotPanel:
         poses: Poses,
         view: FirstView,
         on_click: Callable[[str], None],
+        send: Send,
+        is_watched: Callable[[], bool],
     ) -> None:
         """Draw into this scene, below these frames, move things by `poses`, and fit this view.
 
-        `on_click` takes the name of a thing of the world that was clicked, in viser's threads.
+        Args:
+            scene: the 3D view.
+            frames: below these.
+            poses: move what moves.
+            view: shows all of it.
+            on_click: takes the name of a thing of the world that was clicked, in viser's threads.
+            send: takes requests for contacts.
+            is_watched: returns whether any browser is connected.
         """
+        self._send = send
+        self._is_watched = is_watched
+        self._contacts = ContactLines(scene, frames)
+        self._wants_contacts = False
+        self._told = ""
         self._scene = scene
         self._poses = poses
         self._view = view
@@ -84,6 +102,10 @@ class RobotPanel:
                 "Cameras", True, hint="frustums of the cameras, from CameraInfo and /tf"
             )
             self._world = gui.add_checkbox("World", True, hint="objects around the robots")
+            self._touching = gui.add_checkbox(
+                "Contacts", False, hint="where things touch, and lines as long as the forces there"
+            )
+            self._strongest = gui.add_html("", visible=False)
             fit = gui.add_button("Fit view", color="gray", hint="all robots and nearby objects")
         fit.on_click(in_order(lambda event: self._fit_for.add(event.client_id or 0)))
         self._shown_problem = ""
@@ -102,7 +124,8 @@ class RobotPanel:
         self._frames.show_axes(self._axes.value)
         self._frames.show_names(self._names.value)
         self._markers.update(snapshot.markers)
-        self._markers.show(self._world.value)
+        self._markers.show(self._world.value, transparent=self._touching.value)
+        self._show_contacts(snapshot)
         self._poses.send(time.monotonic())
         self._cameras.update(snapshot.cameras, self._views.value)
         for topic in self._robots.keys() - snapshot.descriptions.keys():
@@ -110,7 +133,7 @@ class RobotPanel:
         for topic, description in snapshot.descriptions.items():
             self._renew(topic, description, snapshot)
         layers = {layer for layer, switch in self._layers.items() if switch.value}
-        inside = self._axes.value or bool(layers & {MASS, INERTIA})
+        inside = self._axes.value or self._touching.value or bool(layers & {MASS, INERTIA})
         for shown in self._robots.values():
             grey = bool(_reason_for_grey(snapshot, shown))
             # Wait for all transforms, because a hand without some of them would appear in the foot.
@@ -119,6 +142,22 @@ class RobotPanel:
         frames = {*transforms, *(step.parent for step in transforms.values())}
         self._show_problem(_problem(snapshot, self._robots.values(), frames))
         self._update_view(snapshot)
+
+    def _show_contacts(self, snapshot: Snapshot) -> None:
+        """Draw the contacts, which are asked for only while they are looked at."""
+        is_shown = self._touching.value
+        wanted = is_shown and self._is_watched()
+        if wanted != self._wants_contacts:
+            self._wants_contacts = wanted
+            self._send(ShowContacts(wanted))
+        contacts = snapshot.contacts if is_shown else None
+        self._contacts.show(contacts)
+        lines = UNKNOWN_CONTACTS if contacts is None else "\n".join(contacts.strongest)
+        text = lines or NO_CONTACT
+        if is_shown and text != self._told:
+            self._told = text
+            self._strongest.content = note(text)
+        show(self._strongest, is_shown)
 
     def _update_view(self, snapshot: Snapshot) -> None:
         """Fit the view to the present contents."""

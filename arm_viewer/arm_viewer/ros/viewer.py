@@ -26,6 +26,7 @@ from arm_viewer.requests import (
     SetEmergencyStop,
     SetPlaying,
     SetSpeed,
+    ShowContacts,
     ShowPictures,
     StepRun,
     SwitchControllers,
@@ -36,6 +37,7 @@ from arm_viewer.ros.call_desk import CallDesk
 from arm_viewer.ros.camera_observer import CameraObserver, ImageObserver
 from arm_viewer.ros.clock_observer import ClockObserver
 from arm_viewer.ros.command_observer import CommandObserver
+from arm_viewer.ros.contact_observer import ContactObserver
 from arm_viewer.ros.controller_observer import ControllerObserver, ManagerCaller
 from arm_viewer.ros.field_observer import FieldObserver
 from arm_viewer.ros.graph_observer import NodeObserver, TopicObserver
@@ -110,6 +112,7 @@ class Viewer(Node):
         self._images = ImageObserver(self, polled)
         self._cameras = CameraObserver(self, polled)
         self._markers = MarkerObserver(self, polled)
+        self._contacts = ContactObserver(self, polled)
         self._controllers = ControllerObserver(self, is_watched)
         self._managers = ManagerCaller(self, self._listed)
         self._commands = CommandObserver(self, polled, self._listed)
@@ -138,6 +141,7 @@ class Viewer(Node):
             self._images,
             self._cameras,
             self._markers,
+            self._contacts,
             self._controllers,
             self._managers,
             self._commands,
@@ -205,6 +209,7 @@ class Viewer(Node):
             pictures=self._images.pictures,
             cameras=self._cameras.views,
             markers=self._markers.markers,
+            contacts=self._contacts.contacts,
             displayed=frozenset({self._source.namespace} if self._source else ()),
             controllers=self._controllers.controllers,
             refusal=self._managers.refusal,
@@ -240,6 +245,8 @@ class Viewer(Node):
                     self._watch(request.wanted)
                 case ShowPictures():
                     self._images.serve(request)
+                case ShowContacts():
+                    self._contacts.show(request.wanted)
                 case PlotCurves() | ListNumbers():
                     self._fields.serve(request)
                 case OpenForm() | PlaceCall() | EndCall():

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
-from viser import FrameHandle, SceneApi
+from viser import FrameHandle, MeshHandle, SceneApi
 
 from arm_description.errors import DescriptionError
 from arm_description.mesh.data import MeshData, merged
@@ -23,6 +23,8 @@ ORIGIN = RigidTransform()
 GROUND_M, GROUND_THICKNESS_M = 5.0, 0.05
 """A box at least this long and wide, and thinner than this, counts as ground."""
 OPAQUE = 0.9
+INSIDE_OPACITY = 0.45
+"""Of shapes while one looks inside."""
 AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 Matrix = NDArray[np.float64]
 _SOLIDS = {
@@ -53,10 +55,17 @@ class Markers:
         self._seen: Mapping[str, Marker] = {}
         self._origins: dict[str, RigidTransform] = {}
         self._handles: dict[str, FrameHandle] = {}
+        self._parts: dict[str, list[MeshHandle]] = {}
+        self._is_transparent = False
         self._root = scene.add_frame(ROOT, show_axes=False)
 
-    def show(self, shown: bool) -> None:
-        """Show or hide all markers."""
+    def show(self, shown: bool, transparent: bool) -> None:
+        """Show or hide all markers, and let one see what is inside them or not."""
+        if transparent != self._is_transparent:
+            self._is_transparent = transparent
+            for name, parts in self._parts.items():
+                for part in parts:
+                    part.opacity = self._opacity(self._seen[name].look)
         if self._root.visible != shown:
             self._root.visible = shown
 
@@ -75,6 +84,10 @@ class Markers:
             self._origins[name] = origin
             self._poses.move(self._handles[name], origin.then(marker.pose))
         self._seen = markers
+
+    def _opacity(self, look: MarkerLook) -> float | None:
+        alpha = min(look.rgba[3], INSIDE_OPACITY if self._is_transparent else 1.0)
+        return None if alpha >= 1.0 else alpha
 
     def bodies(self) -> tuple[list[Body], Obstacles]:
         """Return the bodies of the markers, without the ground, and the obstacles to the view."""
@@ -97,6 +110,7 @@ class Markers:
 
     def _remove(self, name: str) -> None:
         handle = self._handles.pop(name)
+        del self._parts[name]
         self._poses.forget(handle)
         handle.remove()
 
@@ -105,7 +119,8 @@ class Markers:
             self._remove(name)
         path = f"{ROOT}/{node_name(name)}"
         self._handles[name] = self._scene.add_frame(path, show_axes=False)
-        red, green, blue, alpha = look.rgba
+        red, green, blue, _ = look.rgba
+        self._parts[name] = []
         for i, part in enumerate(_parts(name, look)):
             mesh = smooth(part.scaled(look.scale))
             drawn = self._scene.add_mesh_simple(
@@ -113,11 +128,12 @@ class Markers:
                 mesh.vertices,
                 mesh.faces,
                 color=(red, green, blue),
-                opacity=None if alpha >= 1.0 else alpha,
+                opacity=self._opacity(look),
                 side="double",
                 # The shadow map is too coarse for small objects and would draw stripes on them.
                 receive_shadow=False,
             )
+            self._parts[name].append(drawn)
             drawn.on_click(lambda _: self._on_click(name.split("/")[-2]))
 
 

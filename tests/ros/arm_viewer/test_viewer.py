@@ -182,6 +182,33 @@ def test_markers_come_and_go(client, viewer, latched):
     viewer.seen(lambda s: s.markers.keys() == {"/world_markers/crate/2"})
 
 
+def test_contacts_are_subscribed_to_while_they_are_shown(client, viewer, latched):
+    from geometry_msgs.msg import Point
+    from visualization_msgs.msg import Marker, MarkerArray
+
+    from arm_viewer.requests import ShowContacts
+
+    points = Marker(type=Marker.SPHERE_LIST, points=[Point(x=1.0)])
+    points.header.frame_id = "world"
+    forces = Marker(type=Marker.LINE_LIST, points=[Point(x=1.0), Point(z=2.0)], text="a on b: 1 N")
+    publisher = client.node.create_publisher(MarkerArray, "/contact_markers", latched)
+    publisher.publish(MarkerArray(markers=[points, forces]))
+    assert viewer.node.latest().contacts is None
+    assert publisher.get_subscription_count() == 0
+    viewer.node.send(ShowContacts(True))
+    shown = viewer.seen(lambda s: s.contacts)
+    assert (shown.frame, shown.strongest) == ("world", ("a on b: 1 N",))
+    assert shown.points.tolist() == [[1.0, 0.0, 0.0]]
+    assert shown.lines.tolist() == [[[1.0, 0.0, 0.0], [0.0, 0.0, 2.0]]]
+    points.action = forces.action = Marker.DELETE
+    publisher.publish(MarkerArray(markers=[points, forces]))
+    viewer.seen(lambda s: s.contacts is not None and not len(s.contacts.points))
+    viewer.node.send(ShowContacts(False))
+    viewer.seen(lambda s: s.contacts is None)
+    # Of a subscription that was short the publisher's own count may tell nothing.
+    viewer.until(lambda: client.node.count_subscribers("/contact_markers") == 0)
+
+
 def transform(child, parent="base"):
     from geometry_msgs.msg import TransformStamped
 
