@@ -1,6 +1,7 @@
 """The node: joint states in, commands out."""
 
 import signal
+from types import FrameType
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -35,17 +36,14 @@ class PatrolNode(Node):
         self._was_stuck = self._patrol.is_stuck
 
 
-def interrupt(*_: object) -> None:
-    """Handle Ctrl-C: rclpy ends `spin` by itself.
-
-    A KeyboardInterrupt while rclpy reads a message would become a RuntimeError.
-    """
-    if not rclpy.ok():
-        raise KeyboardInterrupt
-
-
 def main() -> None:
     """Run the node until it is interrupted."""
+    interrupts: list[int] = []
+
+    def interrupt(number: int, _: FrameType | None) -> None:
+        interrupts.append(number)
+        raise KeyboardInterrupt
+
     signal.signal(signal.SIGINT, interrupt)
     rclpy.init()
     node = PatrolNode()
@@ -54,8 +52,9 @@ def main() -> None:
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except Exception:
-        # Ctrl-C in the middle of a message: it cannot be sent any more.
-        if rclpy.ok():
+        # Ctrl-C in the middle of a message: rclpy makes a RuntimeError of it while it reads one, and
+        # cannot send another.
+        if rclpy.ok() and not interrupts:
             raise
     finally:
         node.destroy_node()
