@@ -52,8 +52,8 @@ def main() -> None:
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except Exception:
-        # Ctrl-C in the middle of a message: rclpy makes a RuntimeError of it while it reads one, and
-        # cannot send another.
+        # Ctrl-C in the middle of a message: rclpy makes a RuntimeError of it while it reads one,
+        # and cannot send another.
         if rclpy.ok() and not interrupts:
             raise
     finally:
