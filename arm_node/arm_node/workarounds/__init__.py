@@ -12,7 +12,7 @@ stamp_clock and process_clock in `clocks`, and the others in modules of their na
 | torn_ports           | a killed process's port hangs the next one  | rmw_fastrtps     | [1144]   |
 | lost_ports           | a new process's port is removed by a sender | rmw_fastrtps     |          |
 | exit_pause           | a process sleeps for 0.1 s before it ends   | rmw_fastrtps     |          |
-| deadlocked_end       | Fast DDS 3 deadlocks when processes stop    | rmw_fastrtps     | [6502]   |
+| deadlocked_end       | Fast DDS deadlocks when processes stop      | rmw_fastrtps     | [6502]   |
 | private_files        | all users can read Fast DDS's shared memory | rmw_fastrtps     |          |
 | local_profile        | LOCALHOST doubles a profile's transports    | rmw_fastrtps     | [653]    |
 | message_template     | rclpy serialises whole messages each cycle  | rclpy            | [836]    |
@@ -32,8 +32,8 @@ MuJoCo 4.0 and EmPy 4. `serialized_goals` is beside its controller, in
 `arm_control.controllers.joint_trajectory`; the last two belong to the build of `arm_interfaces`, in
 its `interface_build`.
 
-All but `deadlocked_end`, which is for Kilted alone, are made for Jazzy, and all are on with Kilted,
-too, as measured there: the fault exists, or a figure gets better by a tenth.
+All but `deadlocked_end`, which was found on Kilted, are made for Jazzy, and all are on with both,
+as measured there: the fault exists, or a figure gets better by a tenth.
 `benchmarks/RESULTS.md` has the figures of both.
 
 [6535]: https://github.com/eProsima/Fast-DDS/issues/6535

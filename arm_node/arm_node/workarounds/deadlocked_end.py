@@ -1,10 +1,10 @@
-"""Ends a process whose nodes cannot be destroyed, because Fast DDS 3 has deadlocked.
+"""Ends a process whose nodes cannot be destroyed, because Fast DDS has deadlocked.
 
 A thread that hears that another process's publisher is gone holds the mutex of discovery and waits
 for the thread of timers, whose next announcement waits for that mutex. From then on nothing that
-has a timer can be destroyed. Processes that stop together, as those of a launch, meet it: in one of
-a few hundred stops on a busy machine. Seen with Fast DDS 3.2.3, never with 2.14; upstream issue
-6502 is about the same two threads.
+has a timer can be destroyed. Processes that stop together, as those of a launch, meet it: with
+Fast DDS 3.2.3 in one of a few hundred stops on a busy machine; upstream issue 6502 is about the
+same two threads. With 2.14 one of some ten thousand stops did not end; why is not known.
 
 rclpy holds Python's lock while it destroys a publisher, so no thread of Python could end the
 process: a timer of the C library does.
@@ -14,7 +14,7 @@ import ctypes
 import sys
 from contextlib import suppress
 
-from arm_node.workarounds.switch import is_on, uses_fast_dds_3
+from arm_node.workarounds.switch import is_on
 
 PATIENCE_S = 5
 """How long nodes may take; a process of a launch is killed 10 s after its signal to stop."""
@@ -44,7 +44,7 @@ class _TimerSpec(ctypes.Structure):
 
 
 class DestructionLimit:
-    """With Fast DDS 3, ends the process unless its nodes are destroyed in time. Main thread."""
+    """Ends the process unless its nodes are destroyed in time. Main thread."""
 
     def __init__(self) -> None:
         """Do nothing yet."""
@@ -52,7 +52,7 @@ class DestructionLimit:
 
     def start(self, exit_code: int) -> None:
         """Let the process end with this code after `PATIENCE_S`; a second call does nothing."""
-        if self._timer is None and uses_fast_dds_3() and is_on("deadlocked_end"):
+        if self._timer is None and is_on("deadlocked_end"):
             for stream in filter(None, (sys.stdout, sys.stderr)):
                 with suppress(OSError, ValueError):
                     stream.flush()

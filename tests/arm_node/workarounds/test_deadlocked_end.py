@@ -24,7 +24,7 @@ def test_a_process_that_holds_pythons_lock_for_ever_ends_with_its_exit_code(code
 LIMITED = """
 from arm_node.workarounds import deadlocked_end
 deadlocked_end.PATIENCE_S = 1
-deadlocked_end.uses_fast_dds_3, deadlocked_end.is_on = (lambda: {is_3}), (lambda _: {is_on})
+deadlocked_end.is_on = lambda _: {is_on}
 limit = deadlocked_end.DestructionLimit()
 limit.start(7)
 limit.start(8)
@@ -36,14 +36,9 @@ select.select([], [], [], {wait_s})
 
 
 @pytest.mark.parametrize(
-    ("is_3", "is_on", "cancelled", "wait_s", "code"),
-    [
-        (True, True, False, 100, 7),
-        (True, True, True, 1.5, 0),
-        (True, False, False, 1.5, 0),
-        (False, True, False, 1.5, 0),
-    ],
+    ("is_on", "cancelled", "wait_s", "code"),
+    [(True, False, 100, 7), (True, True, 1.5, 0), (False, False, 1.5, 0)],
 )
-def test_it_is_for_fast_dds_3_alone_and_can_be_cancelled(is_3, is_on, cancelled, wait_s, code):
-    script = LIMITED.format(is_3=is_3, is_on=is_on, cancelled=cancelled, wait_s=wait_s)
+def test_it_can_be_cancelled_and_switched_off(is_on, cancelled, wait_s, code):
+    script = LIMITED.format(is_on=is_on, cancelled=cancelled, wait_s=wait_s)
     assert subprocess.run([sys.executable, "-c", script]).returncode == code
