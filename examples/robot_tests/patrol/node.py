@@ -1,11 +1,10 @@
 """The node: joint states in, commands out."""
 
 import signal
-from types import FrameType
 
 import rclpy
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
@@ -37,28 +36,14 @@ class PatrolNode(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
-    interrupts: list[int] = []
+    """Run the node until Ctrl-C, which ends it at once: it has nothing to put away.
 
-    def interrupt(number: int, _: FrameType | None) -> None:
-        interrupts.append(number)
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGINT, interrupt)
-    rclpy.init()
-    node = PatrolNode()
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    except Exception:
-        # Ctrl-C in the middle of a message: rclpy makes a RuntimeError of it while it reads one,
-        # and cannot send another.
-        if rclpy.ok() and not interrupts:
-            raise
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    rclpy's own handlers make a RuntimeError of a Ctrl-C that comes while it reads a message, and a
+    node that is destroyed while others send may wait for ever.
+    """
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    rclpy.spin(PatrolNode())
 
 
 if __name__ == "__main__":
