@@ -33,6 +33,7 @@ setup(
         "console_scripts": [],
         "launch_py.preloads": [
             "lazy_messages = arm_node.workarounds.lazy_messages:import_messages_lazily",
+            "plain_programs = arm_node.workarounds.plain_programs:reach_first_node",
         ],
     },
 )

@@ -20,7 +20,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
 from itertools import pairwise
 from types import FrameType
-from typing import TYPE_CHECKING
 
 from arm_node.environment import UnusableEnvironmentError, prepare_environment
 from arm_node.notify import notify
@@ -31,9 +30,6 @@ from arm_node.workarounds.deadlocked_end import DestructionLimit
 from arm_node.workarounds.local_profile import use_local_profile
 from arm_node.workarounds.private_files import hide_shared_memory, made_private
 from arm_node.workarounds.switch import switched_off
-
-if TYPE_CHECKING:
-    pass
 
 SWITCH_INTERVAL_S = 0.0005
 """Python's default of 5 ms lets one busy callback delay a control tick by as much."""

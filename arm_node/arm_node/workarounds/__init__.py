@@ -4,6 +4,7 @@ Each is made for certain versions of a library. With any other version it is off
 logs that in one line. `ARM_WITHOUT=name,name` switches workarounds off by hand, `ARM_WITHOUT=all`
 all of them; see `switch`. torn_ports, lost_ports and signs_of_life are in the module `ports`,
 stamp_clock and process_clock in `clocks`, and the others in modules of their names.
+`plain_programs` gives discovery and lost_ports to programs of plain rclpy that the suite starts.
 
 | name                 | works around                                | library          | upstream |
 | -------------------- | ------------------------------------------- | ---------------- | -------- |
