@@ -95,7 +95,7 @@ def _urdf() -> str:
 def measure(path: Path) -> list[tuple[str, float]]:
     """Return what was measured, each with its name."""
     from arm_viewer.recordings.curve import read_curve
-    from arm_viewer.recordings.player import Wanted
+    from arm_viewer.recordings.open_recording import Wanted
     from arm_viewer.recordings.recorded_bag import RecordedBag
     from arm_viewer.ros.recorded_state import RecordedState
 

@@ -66,6 +66,21 @@ def test_the_bag_has_each_joint_state_and_its_time_never_goes_back(replayed):
     assert "pink_cylinder" in owners
 
 
+def test_files_of_the_bag_are_named_when_they_are_complete(replayed, monkeypatch):
+    for setting in ("PROGRESS_S", "MIN_PART_S"):
+        monkeypatch.setattr(f"arm_cli.sim.recordings.{setting}", 0.0)
+    monkeypatch.setattr("arm_cli.sim.recordings.MAX_PART_S", 0.0)
+    _, told, folder = replayed()
+    named = [(line["file"], line["periods"]) for line in told if "file" in line]
+    assert [periods for _, periods in named] == list(range(PERIODS + 1))
+    for name, periods in named:
+        with BagReader(folder / name) as part:
+            times_ns = [m.log_time_ns for m in part.messages(["/joint_states"])]
+        assert times_ns == [periods * 10_000_000]
+    with BagReader(folder) as bag:
+        assert len(list(bag.messages(["/joint_states"]))) == PERIODS + 1
+
+
 def test_a_difference_ends_the_bag(recorded, replayed, tmp_path):
     file = RunFile(recorded)
     header = {name: value for name, value in file.header.items() if name != "format"}

@@ -16,7 +16,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 from arm_viewer.recordings.curve import read_curve
-from arm_viewer.recordings.player import Wanted
+from arm_viewer.recordings.open_recording import Wanted
 from arm_viewer.recordings.recorded_bag import RecordedBag
 from arm_viewer.ros.number_places import number_places
 from arm_viewer.ros.observer import type_name

@@ -203,11 +203,29 @@ class BagWriter:
         """
         try:
             if self._is_full(message.log_time_ns):
-                self._split()
+                self.split()
             self._file.write(message)
         except OSError as error:
             raise _cannot_write(self.folder, error) from error
         self._counts[message.topic] += 1
+
+    def split(self) -> str:
+        """Finish the file, so that it has its index, and begin the next; return its name.
+
+        Raises:
+            BagError: the bag cannot be written.
+        """
+        finished = self._file.info
+        try:
+            self._file.close(dump_yaml(self.metadata.to_plain()))
+            self._closed.append(finished)
+            self._file = self._open_next()
+            for topic, definition in self._topics.values():
+                self._file.add_topic(topic, definition)
+            self._write_metadata()
+        except OSError as error:
+            raise _cannot_write(self.folder, error) from error
+        return finished.name
 
     def flush(self) -> None:
         """Write everything so far, metadata included, so that it survives a kill.
@@ -247,14 +265,6 @@ class BagWriter:
             return True
         limit_ns = settings.max_duration_ns
         return limit_ns is not None and time_ns - span.start_ns >= limit_ns
-
-    def _split(self) -> None:
-        self._file.close(dump_yaml(self.metadata.to_plain()))
-        self._closed.append(self._file.info)
-        self._file = self._open_next()
-        for topic, definition in self._topics.values():
-            self._file.add_topic(topic, definition)
-        self._write_metadata()
 
     def _open_next(self) -> McapFileWriter:
         path = self.folder / f"{self.folder.name}_{len(self._closed)}.mcap"

@@ -73,6 +73,14 @@ class RunBag:
             if shapes is not None:
                 self._write({MARKERS: shapes})
 
+    def split(self) -> str:
+        """Finish the file of what was shown so far, and begin another; return its name.
+
+        Raises:
+            BagError: the bag cannot be written.
+        """
+        return self._writer.split()
+
     def close(self) -> None:
         """Finish the bag.
 

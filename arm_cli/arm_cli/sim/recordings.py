@@ -16,6 +16,7 @@ from arm_cli.ros.connection import connect
 from arm_cli.sim.simulation import NAMESPACE, ask_simulation
 
 if TYPE_CHECKING:
+    from arm_cli.ros.run_bag import RunBag
     from arm_gazebo.recording.replay import Difference, Replay, ReplayResult
     from arm_gazebo.recording.run_file import RecordedInput
 
@@ -26,6 +27,8 @@ BLOBS = ("model", "saved")
 """Arguments in a binary form, which are not printed."""
 PROGRESS_S = 0.25
 """Wall time between two lines of --json."""
+MIN_PART_S, MAX_PART_S = 0.5, 10.0
+"""Wall time in which a file of --bag is written with --json: as long as all before it."""
 _REFUSED = " (refused)"
 
 
@@ -92,7 +95,11 @@ def _say_recorded(path: Path) -> None:
         type=Path,
         help="write clock, joint states, transforms and shapes as a bag",
     ),
-    Flag("--json", help="print a line of JSON now and then, and what was found as the last one"),
+    Flag(
+        "--json",
+        help="print a line of JSON now and then, and what was found as the last one; with --bag, "
+        "such a line names each file that is complete",
+    ),
 )
 def replay(options: argparse.Namespace) -> int:
     """Run a recording again; return 1 unless every control period is equal."""
@@ -121,9 +128,12 @@ def replay(options: argparse.Namespace) -> int:
 
 
 def _replayed(
-    run: "Replay", options: argparse.Namespace, show: Callable[[], object] = lambda: None
+    run: "Replay",
+    options: argparse.Namespace,
+    show: Callable[[], object] = lambda: None,
+    bag: "RunBag | None" = None,
 ) -> "ReplayResult":
-    """Run and compare, and print what was found."""
+    """Run and compare, and print what was found; `show` and `bag` take each equal period."""
 
     def say_input(item: "RecordedInput") -> None:
         where = " ".join(filter(None, (item.controller, item.method)))
@@ -133,7 +143,7 @@ def _replayed(
         else:
             say(f"{run.simulation.time_s:.3f} s: {words}{_REFUSED * item.raised}")
 
-    progress = _Progress(run) if options.json else None
+    progress = _Progress(run, bag) if options.json else None
 
     def after_period() -> None:
         show()
@@ -157,24 +167,34 @@ def _replayed(
 class _Progress:
     """Tells in JSON how far a replay is, at once and every PROGRESS_S.
 
+    A bag gets a new file from time to time, so that what is equal so far can be read at once.
+
     Attributes:
         lengths: length of the recording and of a period.
     """
 
-    def __init__(self, run: "Replay") -> None:
+    def __init__(self, run: "Replay", bag: "RunBag | None") -> None:
         self._run = run
+        self._bag = bag
         self.lengths = {
             "of_periods": run.file.count_periods(),
             "period_s": run.simulation.timing.period_s,
         }
+        self._began_s = time.monotonic()
         self._told_s = -math.inf
+        self._split_s = self._began_s + MIN_PART_S
         self.tell()
 
     def tell(self) -> None:
         now_s = time.monotonic()
-        if now_s - self._told_s >= PROGRESS_S:
-            self._told_s = now_s
-            print_json({"periods": self._run.periods, **self.lengths})
+        if now_s - self._told_s < PROGRESS_S:
+            return
+        self._told_s = now_s
+        told: dict[str, object] = {"periods": self._run.periods, **self.lengths}
+        if self._bag is not None and now_s >= self._split_s:
+            self._split_s = now_s + min(now_s - self._began_s, MAX_PART_S)
+            told["file"] = self._bag.split()
+        print_json(told)
 
 
 def _published(run: "Replay", options: argparse.Namespace) -> "ReplayResult":
@@ -194,7 +214,7 @@ def _written(run: "Replay", options: argparse.Namespace) -> "ReplayResult":
     from arm_cli.ros.run_bag import RunBag
 
     with closing(RunBag(options.bag, run)) as bag:
-        return _replayed(run, options, bag.show)
+        return _replayed(run, options, bag.show, bag)
 
 
 def _ignore(_item: "RecordedInput") -> None:

@@ -292,6 +292,7 @@ A button that cannot act now keeps its focus and says why. What is older than tw
   addEventListener("DOMContentLoaded", begin);
 
   window.armTime = {
+    say,
     press: (selector) => document.querySelector(`#arm-bar ${selector}`).click(),
     faster: (steps) => {
       const select = at("arm-speed");

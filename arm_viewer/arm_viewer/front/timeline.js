@@ -19,6 +19,7 @@ The server plays and reads; this script shows what it says and sends what the us
   let sought = 0;
   let seekTimer = 0;
   let refusals = null;
+  let stopped = null;
   let refusedTimer = 0;
   let isDrawn = true;
 
@@ -80,15 +81,35 @@ The server plays and reads; this script shows what it says and sends what the us
 
   /* What is known about a run: beside the timeline once it is shown, until then in the banner. */
   function showRun(isOpen, run) {
-    const words = run ? `${run.is_over ? (run.is_equal ? "✓ " : "≠ ") : ""}${run.text}` : "";
-    at("arm-run").textContent = words;
-    at("arm-run").title = run ? [run.text, ...run.details].join("\n") : "";
-    at("arm-run").classList.toggle("arm-differs", Boolean(run) && !run.is_equal);
+    at("arm-verdict").hidden = !run;
+    at("arm-run").textContent = run ? `${sign(run)} ${run.text}` : "";
+    at("arm-verdict").title = run ? [run.text, ...run.differences, ...run.details].join("\n") : "";
+    at("arm-verdict").classList.toggle("arm-differs", Boolean(run) && run.is_over && !run.is_equal);
+    const differs = Boolean(run) && run.differences.length > 0;
+    at("arm-run-said").textContent = differs ? run.text.split(":")[0] : run ? run.text : "";
+    at("arm-run-differs").hidden = !differs;
+    at("arm-run-differences").replaceChildren(...lines(run ? run.differences : []));
+    at("arm-run-more").replaceChildren(...lines(run ? run.details : []));
+    at("arm-run-end").hidden = !run || run.differs_s === null;
+    if (!isOpen) at("arm-run-menu").hidePopover();
     const banner = at("arm-banner");
     if (!banner.classList.contains("arm-refused")) {
       banner.querySelector(".arm-word").textContent = isOpen || !run ? NOT_LIVE : `${run.text}; the page is live`;
     }
   }
+
+  function sign(run) {
+    if (!run.is_over) return "…";
+    if (run.is_equal) return "✓";
+    return run.differs_s === null ? "!" : "≠";
+  }
+
+  const lines = (texts) =>
+    texts.map((text) => {
+      const line = document.createElement("li");
+      line.textContent = text;
+      return line;
+    });
 
   function showSpeed() {
     const select = at("arm-deck-speed");
@@ -162,7 +183,7 @@ The server plays and reads; this script shows what it says and sends what the us
 
   /* Sends where the user is, at most every SEEK_MS, and the last place in any case. */
   function seek(time, isLast) {
-    const wanted = Math.min(Math.max(time, 0), open.length_s);
+    const wanted = Math.min(Math.max(time, 0), open.open_s);
     moment = wanted;
     if (dragged !== null) dragged = wanted;
     clearTimeout(seekTimer);
@@ -199,6 +220,13 @@ The server plays and reads; this script shows what it says and sends what the us
     }, REFUSED_MS);
   }
 
+  /* A verification that somebody ended: what it did not compare. */
+  function showStopped() {
+    at("arm-stopped").textContent = open.stopped;
+    if (stopped !== null && open.stopped && open.stopped !== stopped) armTime.say(open.stopped, false);
+    stopped = open.stopped;
+  }
+
   /* The track: the curve, the marks, the played part and the moment. */
 
   function drawSoon() {
@@ -227,6 +255,7 @@ The server plays and reads; this script shows what it says and sends what the us
     paint.fillRect(PADDING, 0, width - 2 * PADDING, floor);
     paint.fillStyle = "#ffe3b8";
     paint.fillRect(PADDING, 0, place(shown()) - PADDING, floor);
+    if (open.run) drawUncompared(paint, place, floor);
     drawTicks(paint, place, width, floor);
     drawCurve(paint, place, floor);
     drawMarks(paint, place, width, floor);
@@ -235,6 +264,37 @@ The server plays and reads; this script shows what it says and sends what the us
     paint.beginPath();
     paint.arc(place(shown()), floor, 6, 0, 2 * Math.PI);
     paint.fill();
+  }
+
+  /* What of a run is not compared is hatched, and the first difference is a red line. */
+  function drawUncompared(paint, place, floor) {
+    const [from, to] = [place(open.open_s), place(open.length_s)];
+    if (to - from >= 1) {
+      paint.save();
+      paint.beginPath();
+      paint.rect(from, 0, to - from, floor);
+      paint.clip();
+      paint.strokeStyle = "#adb5bd";
+      paint.lineWidth = 1;
+      paint.beginPath();
+      for (let x = from - floor; x < to; x += 9) {
+        paint.moveTo(x, floor);
+        paint.lineTo(x + floor, 0);
+      }
+      paint.stroke();
+      const words = open.run.is_over ? "not compared" : "not compared yet";
+      const size = paint.measureText(words).width + 8;
+      paint.fillStyle = "#fff";
+      paint.fillRect(to - size, 0, size, 17);
+      paint.fillStyle = "#495057";
+      paint.textAlign = "right";
+      paint.fillText(words, to - 4, 13);
+      paint.restore();
+    }
+    if (open.run.differs_s !== null) {
+      paint.fillStyle = "#b02525";
+      paint.fillRect(place(open.run.differs_s) - 1, 0, 2, floor);
+    }
   }
 
   function drawTicks(paint, place, width, floor) {
@@ -347,12 +407,16 @@ The server plays and reads; this script shows what it says and sends what the us
   }
 
   function openMark() {
-    const menu = at("arm-mark-menu");
+    openAbove("arm-mark-menu", "arm-mark");
+    at("arm-mark-text").focus();
+  }
+
+  function openAbove(menuId, buttonId) {
+    const menu = at(menuId);
     menu.showPopover();
-    const place = at("arm-mark").getBoundingClientRect();
+    const place = at(buttonId).getBoundingClientRect();
     menu.style.top = `${place.top - menu.offsetHeight - 6}px`;
     menu.style.left = `${Math.max(Math.min(place.left, innerWidth - menu.offsetWidth - 6), 6)}px`;
-    at("arm-mark-text").focus();
   }
 
   function begin() {
@@ -408,6 +472,11 @@ The server plays and reads; this script shows what it says and sends what the us
     });
     at("arm-recordings").addEventListener("click", () => send("recordings", {}));
     at("arm-mark").addEventListener("click", openMark);
+    at("arm-verdict").addEventListener("click", () => openAbove("arm-run-menu", "arm-verdict"));
+    at("arm-run-end").addEventListener("click", () => {
+      at("arm-run-menu").hidePopover();
+      seek(open.open_s, true);
+    });
     at("arm-mark-form").addEventListener("submit", (event) => {
       event.preventDefault();
       act("mark", { time_s: shown(), text: at("arm-mark-text").value });
@@ -427,6 +496,7 @@ The server plays and reads; this script shows what it says and sends what the us
     showOpen();
     showMoment();
     showRefused();
+    showStopped();
   });
   armChannel.on("timeline_moment", (message) => {
     moment = message.time_s;

@@ -16,8 +16,9 @@ from arm_viewer.errors import BrowserMessageError, PageRecordingError
 from arm_viewer.recordings.curve import WholeCurve
 from arm_viewer.recordings.folder import find_recording, listed_recordings
 from arm_viewer.recordings.marks import MAX_TEXT, Mark
+from arm_viewer.recordings.open_recording import PlayerState, ShownCurve
 from arm_viewer.recordings.playback import MAX_SPEED, MIN_SPEED, Playback
-from arm_viewer.recordings.player import REFUSED, Player, PlayerState, ShownCurve
+from arm_viewer.recordings.player import REFUSED, Player
 from arm_viewer.recordings.recorder import Recorder, RecorderState
 from arm_viewer.snapshot import Snapshot
 
@@ -39,6 +40,7 @@ def timeline_fields(state: PlayerState, problem: str, refusals: int) -> dict[str
         "name": state.name,
         "began_s": 1e-9 * state.began_ns,
         "length_s": state.length_s,
+        "open_s": state.open_s,
         "playing": state.is_playing,
         "speed": state.speed,
         "marks": [[mark.time_s, mark.text] for mark in state.marks],
@@ -47,6 +49,7 @@ def timeline_fields(state: PlayerState, problem: str, refusals: int) -> dict[str
         "refusals": refusals,
         "refused": REFUSED,
         "run": None if state.run is None else asdict(state.run),
+        "stopped": state.stopped,
     }
 
 

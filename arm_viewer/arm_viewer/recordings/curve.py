@@ -53,14 +53,22 @@ def read_curve(
     topic: str,
     place: NumberPlace,
     goes_on: Callable[[], bool] = lambda: True,
+    length_s: float | None = None,
 ) -> WholeCurve:
     """Return the curve of a number; what was found so far once `goes_on` returns false.
+
+    Args:
+        bag: the recording.
+        topic: of the messages.
+        place: of the number.
+        goes_on: asked before each chunk.
+        length_s: what the columns stand for, from the beginning on; None for all there is.
 
     Raises:
         PageRecordingError: the file is damaged.
     """
     low, high = np.full(COLUMNS, np.inf), np.full(COLUMNS, -np.inf)
-    length_ns = max(bag.end_ns - bag.start_ns, 1)
+    length_ns = max(bag.end_ns - bag.start_ns if length_s is None else round(1e9 * length_s), 1)
     skipped = 0
     for chunk in bag.chunks(topic):
         if not goes_on():

@@ -5,7 +5,7 @@ read an hour of joint states to find the robot description at its beginning.
 """
 
 import heapq
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -59,23 +59,47 @@ class RecordedBag:
         end_ns: time of the last message.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, files: Sequence[Path] = ()) -> None:
         """Open it.
+
+        Args:
+            path: the folder or file.
+            files: its files, where there will be more; without them, all that are there.
 
         Raises:
             PageRecordingError: there is no recording, or it cannot be read; the message says why.
         """
         self.path = path
+        self._files: dict[Path, McapChunks] = {}
         with ExitStack() as opening:
-            files = [opening.enter_context(closing(McapChunks(part))) for part in _files(path)]
-            self.topics = _topics(files)
+            self._open_files = opening
+            self._open(files or _files(path))
             if not self.topics:
                 raise PageRecordingError(f"{path} has no messages")
             self._open_files = opening.pop_all()
+
+    def extend(self, files: Sequence[Path]) -> bool:
+        """Read these files, too; return whether one of them is new.
+
+        Raises:
+            PageRecordingError: one of them cannot be read.
+        """
+        if self._files.keys() >= set(files):
+            return False
+        self._open(files)
+        return True
+
+    def _open(self, paths: Sequence[Path]) -> None:
+        """Open the files that are not open, and find the messages of all of them."""
+        for path in paths:
+            if path not in self._files:
+                self._files[path] = self._open_files.enter_context(closing(McapChunks(path)))
+        files = self._files.values()
+        self.topics = _topics(files)
         statistics = [s for s in (file.summary.statistics for file in files) if s]
         filled = [s for s in statistics if s.message_count]
-        self.start_ns = min(s.message_start_time for s in filled)
-        self.end_ns = max(s.message_end_time for s in filled)
+        self.start_ns = min((s.message_start_time for s in filled), default=0)
+        self.end_ns = max((s.message_end_time for s in filled), default=0)
         self._places: dict[str, list[ChunkPlace]] = {name: [] for name in self.topics}
         for file in files:
             for channel in file.summary.channels.values():
@@ -180,7 +204,7 @@ def _files(path: Path) -> list[Path]:
     return [path]
 
 
-def _topics(files: list[McapChunks]) -> dict[str, TopicSummary]:
+def _topics(files: Iterable[McapChunks]) -> dict[str, TopicSummary]:
     found: dict[str, TopicSummary] = {}
     for summary in (file.summary for file in files):
         counts = summary.statistics.channel_message_counts if summary.statistics else {}

@@ -1,7 +1,8 @@
 """Recordings of runs: told apart from bags, and verified by running them again.
 
 `arm sim replay` simulates the run in a process of its own, compares each control period with the
-recording, and writes what it sees as a bag, which the page plays like any other.
+recording, and writes those that are equal as a bag, file by file. The page plays the files that are
+complete while it goes on.
 """
 
 import json
@@ -41,16 +42,39 @@ class RunVerdict:
     Attributes:
         name: of its file.
         text: a sentence about it.
-        details: what differs, or what else is to say, a line each.
+        details: what else is to say, a line each.
+        differences: what ran again otherwise, and what was recorded instead, a line each.
         is_over: whether it has run again, or cannot.
-        is_equal: whether every period that has run again is equal.
+        is_equal: whether every period of the recording has run again, and is equal.
+        compared_s: how far it has been compared, and is equal, from its beginning.
+        length_s: its length; 0 as long as it is not known.
+        differs_s: the end of the first period that differs; None if none is known.
     """
 
     name: str
-    text: str = "starting"
+    text: str = "it is being read"
     details: tuple[str, ...] = ()
+    differences: tuple[str, ...] = ()
     is_over: bool = False
-    is_equal: bool = True
+    is_equal: bool = False
+    compared_s: float = 0.0
+    length_s: float = 0.0
+    differs_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class EqualPart:
+    """The beginning of a run that is equal and can be shown.
+
+    Attributes:
+        files: of the bag that shows it.
+        until_s: where it ends.
+        grows: whether there may be more.
+    """
+
+    files: tuple[Path, ...] = ()
+    until_s: float = 0.0
+    grows: bool = True
 
 
 class RunCheck:
@@ -58,26 +82,28 @@ class RunCheck:
 
     Attributes:
         verdict: what is known so far.
+        part: what can be shown so far.
     """
 
     def __init__(
         self,
         path: Path,
-        ended: Callable[["RunCheck", Path | None], None],
+        changed: Callable[["RunCheck"], None],
         command: Sequence[str] = (sys.executable, "-P", "-m", "arm_cli", "sim", "replay"),
     ) -> None:
         """Begin.
 
         Args:
             path: the recording.
-            ended: called in another thread with the bag, None if there is none.
+            changed: called in another thread when there is more to show, and at the end.
             command: what runs it again.
 
         Raises:
             PageRecordingError: the process cannot be started.
         """
         self.verdict = RunVerdict(path.name)
-        self._ended = ended
+        self.part = EqualPart()
+        self._changed = changed
         self._folder = tempfile.TemporaryDirectory(
             prefix="arm_page_run_", ignore_cleanup_errors=True
         )
@@ -105,15 +131,26 @@ class RunCheck:
         for thread in self._threads:
             thread.start()
 
-    def close(self) -> None:
-        """End the process, and remove its bag."""
-        self._is_wanted = False
+    def close(self) -> str:
+        """End the process, and remove its bag; say what was not compared, if anything was not."""
+        verdict, self._is_wanted = self.verdict, False
         self._process.kill()
         self._folder.cleanup()
+        if verdict.is_over:
+            return ""
+        if not verdict.compared_s:
+            return f"{verdict.name}: verification stopped before anything was compared"
+        return (
+            f"{verdict.name}: verification stopped; 0 to {_range(verdict)} is equal, the rest was "
+            "not compared"
+        )
 
     def fail(self, why: str) -> None:
-        """Say that the run cannot be shown."""
-        text = f"cannot be run again: {why}"
+        """Say that the run cannot be run again any further."""
+        before = (
+            f"0 to {_range(self.verdict)} is equal, then it " if self.verdict.compared_s else ""
+        )
+        text = f"{before}cannot be run again: {why}"
         self.verdict = replace(self.verdict, text=text, is_over=True, is_equal=False)
 
     def _listen(self) -> None:
@@ -127,14 +164,22 @@ class RunCheck:
         assert self._process.stdout is not None
         with self._process.stdout as lines:
             for line in lines:
+                shown = self.part
                 self._take(line)
-        self._process.wait()
+                if self.part is not shown and self._is_wanted:
+                    self._changed(self)
+        code = self._process.wait()
         self._threads[1].join()
         if not self._is_wanted:
             return
         if not self.verdict.is_over:
             self.fail(" ".join(self._said) or "the process ended without a word")
-        self._ended(self, self._bag if self._bag.is_dir() else None)
+        self.part = replace(self.part, grows=False)
+        if code >= 0:
+            # It has finished its last file.
+            files = tuple(self._bag.glob("*.mcap"))
+            self.part = EqualPart(files, self.verdict.compared_s, grows=False)
+        self._changed(self)
 
     def _take(self, line: str) -> None:
         try:
@@ -142,34 +187,57 @@ class RunCheck:
             if "result" in told:
                 self.verdict = _result(self.verdict.name, told["result"], self._said)
             else:
-                passed_s, length_s = (told[key] * told["period_s"] for key in _LENGTHS)
-                text = f"running it again: equal so far, {passed_s:.1f} of {length_s:.1f} s"
-                self.verdict = replace(self.verdict, text=text)
+                self._take_progress(told)
         except (ValueError, KeyError, TypeError):
             self._said = [*self._said, line.strip()[:_MAX_SAID]][-4:]
+
+    def _take_progress(self, told: Mapping[str, Any]) -> None:
+        compared_s, length_s = (told[key] * told["period_s"] for key in _LENGTHS)
+        verdict = replace(self.verdict, compared_s=compared_s, length_s=length_s)
+        text = f"equal so far: {_range(verdict)}"
+        self.verdict = replace(verdict, text=text)
+        if "file" in told:
+            files = (*self.part.files, self._bag / told["file"])
+            self.part = EqualPart(files, compared_s)
 
 
 _LENGTHS = ("periods", "of_periods")
 
 
+def _range(verdict: RunVerdict) -> str:
+    return f"{verdict.compared_s:.2f} of {verdict.length_s:.2f} s"
+
+
 def _result(name: str, found: Mapping[str, Any], said: Sequence[str]) -> RunVerdict:
     periods, difference = found["periods"], found["difference"]
-    passed_s = periods * found["period_s"]
+    period_s = found["period_s"]
     details = list(said)
     if found["is_cut_off"]:
         details.append("the recording has no end: its writer was killed, or is still writing")
     if found["end_reason"]:
         details.append(f"the recording ended because {found['end_reason']}")
+    verdict = RunVerdict(
+        name,
+        is_over=True,
+        is_equal=difference is None and periods > 0,
+        compared_s=periods * period_s,
+        length_s=found["of_periods"] * period_s,
+    )
     if difference is None:
         text = (
             f"verified: all {periods} control periods are equal"
             if periods
             else "holds no control period, so nothing was compared"
         )
-        return RunVerdict(name, text, tuple(details), True, periods > 0)
+        return replace(verdict, text=text, details=tuple(details))
+    differs_s = verdict.compared_s + period_s
     text = (
-        f"differs at {passed_s + found['period_s']:.2f} s, in control period "
-        f"{difference['period']}: {difference['lines'][0]}"
+        f"differs at {differs_s:.2f} s, in control period {difference['period']}: "
+        f"{difference['lines'][0]}"
     )
-    details = [*difference["lines"], *details, "nothing after the difference is shown"]
-    return RunVerdict(name, text, tuple(details), True, False)
+    details = (
+        *details,
+        f"0 to {_range(verdict)} is equal; what follows is neither compared nor shown",
+    )
+    lines = tuple(difference["lines"])
+    return replace(verdict, text=text, details=details, differences=lines, differs_s=differs_s)

@@ -19,7 +19,7 @@ from visualization_msgs.msg import MarkerArray
 
 from arm_viewer.plots.history import Curves
 from arm_viewer.recordings.curve import NumberPlace, read_samples
-from arm_viewer.recordings.player import Wanted
+from arm_viewer.recordings.open_recording import Wanted
 from arm_viewer.recordings.recorded_bag import CDR, RecordedBag, Sample
 from arm_viewer.ros.camera_observer import camera_view, picture_of
 from arm_viewer.ros.graph_observer import message_class_of
@@ -81,6 +81,15 @@ class RecordedState:
         self._plotted: dict[str, dict[str, NumberPlace]] = {}
         self._plotted_names: frozenset[str] = frozenset()
         self._plotted_ns = -1
+        self.reread()
+
+    def reread(self) -> None:
+        """Find the topics and numbers of the recording, as when it has got longer.
+
+        Raises:
+            PageRecordingError: the file is damaged.
+        """
+        recording = self._recording
         self._places = self.numbers()
         listed: dict[str, list[str]] = {}
         for topic, number in self._places:

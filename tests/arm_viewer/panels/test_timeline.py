@@ -8,8 +8,8 @@ from arm_viewer.errors import BrowserMessageError, PageRecordingError
 from arm_viewer.panels.timeline import TimelinePanel, curve_fields, timeline_fields
 from arm_viewer.recordings.curve import WholeCurve
 from arm_viewer.recordings.marks import Mark
+from arm_viewer.recordings.open_recording import PlayerState, ShownCurve
 from arm_viewer.recordings.playback import Playback
-from arm_viewer.recordings.player import PlayerState, ShownCurve
 from arm_viewer.recordings.recorder import RecorderState
 from arm_viewer.snapshot import Snapshot
 

@@ -44,3 +44,23 @@ def test_a_recording_of_one_moment_does_not_play():
     playback = Playback(0.0)
     playback.play()
     assert not playback.is_playing
+
+
+def test_what_is_not_open_yet_is_not_reached_and_playing_waits_for_it():
+    playback = Playback(10.0, open_s=2.0, grows=True)
+    playback.seek(9.0)
+    assert playback.time_s == 2.0
+    playback.play()
+    playback.advance(1.0)
+    assert (playback.time_s, playback.is_playing) == (2.0, True)
+    playback.open_s = 5.0
+    playback.advance(1.0)
+    assert playback.time_s == 3.0
+
+
+def test_playing_ends_where_nothing_more_will_come():
+    playback = Playback(10.0, 1.0, True, open_s=2.0)
+    playback.advance(5.0)
+    assert (playback.time_s, playback.is_playing) == (2.0, False)
+    playback.play()
+    assert playback.time_s == 0.0

@@ -1,7 +1,7 @@
 """Live or recorded: what the page sees, and what reaches a robot."""
 
 import time
-from functools import partial
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
@@ -13,8 +13,14 @@ from arm_viewer.recordings.curve import NumberPlace
 from arm_viewer.recordings.marks import Mark, read_marks
 from arm_viewer.recordings.playback import Playback
 from arm_viewer.recordings.player import Player
-from arm_viewer.recordings.run_check import MAGIC, PROFILE, RunVerdict
-from arm_viewer.requests import MoveJoints, SetEmergencyStop, SetPlaying, ShowPictures
+from arm_viewer.recordings.run_check import MAGIC, PROFILE, EqualPart, RunVerdict
+from arm_viewer.requests import (
+    MoveJoints,
+    SetEmergencyStop,
+    SetPlaying,
+    ShowContacts,
+    ShowPictures,
+)
 from arm_viewer.snapshot import Snapshot
 from arm_viewer.world.dropped_file import DroppedFile
 from arm_viewer.world_requests import AddFile, LookAtThing, RemoveThing
@@ -37,6 +43,9 @@ class Reader:
         return Snapshot(
             now_s, "a.mcap", refusal=f"{time_ns}", image_topics=tuple(sorted(wanted.pictures))
         )
+
+    def reread(self):
+        self.asked.append("reread")
 
     def numbers(self):
         pattern = np.frombuffer(b"12345678", dtype=np.uint8)
@@ -88,12 +97,12 @@ def test_a_recording_shows_the_moment_and_the_live_emergency_stop(player, file):
 
 def test_nothing_but_the_emergency_stop_reaches_a_robot(player, file, sent):
     player.open(file)
-    for request in (MOVE, SetPlaying(True), SetEmergencyStop(True)):
+    for request in (MOVE, SetPlaying(True), ShowContacts(True), SetEmergencyStop(True)):
         player.send(request)
     things = (RemoveThing("box"), AddFile(DroppedFile("a.stl", b"x"), RigidTransform()))
     for request in (*things, LookAtThing("box")):
         player.send(request)
-    assert sent == [SetEmergencyStop(True), LookAtThing("box")]
+    assert sent == [ShowContacts(True), SetEmergencyStop(True), LookAtThing("box")]
     assert player.refusals == 4
     player.close()
     player.send(MOVE)
@@ -167,16 +176,25 @@ def test_a_file_that_cannot_be_read_leaves_what_is_shown(player, file, tmp_path)
 
 
 class Check:
-    """Has nothing to say, and is over when a test says so."""
+    """Has as much to show as a test says."""
 
-    verdict = RunVerdict("a.run")
+    verdict = RunVerdict("a.run", length_s=40.0)
 
-    def __init__(self, path, ended):
-        self.end = partial(ended, self)
+    def __init__(self, path, changed):
+        self._changed = changed
         self.is_closed = False
+        self.part = EqualPart()
+
+    def show(self, *files, until_s=10.0, grows=True):
+        self.part = EqualPart(files, until_s, grows)
+        self._changed(self)
+
+    def fail(self, why):
+        self.verdict = replace(self.verdict, text=why)
 
     def close(self):
         self.is_closed = True
+        return "a.run: stopped"
 
 
 @pytest.fixture
@@ -186,8 +204,8 @@ def checks():
 
 @pytest.fixture
 def run_player(sent, checks):
-    def check_run(path, ended):
-        checks.append(Check(path, ended))
+    def check_run(path, changed):
+        checks.append(Check(path, changed))
         return checks[-1]
 
     player = Player(lambda: LIVE, sent.append, Reader, check_run)
@@ -202,34 +220,64 @@ def run_file(tmp_path):
     return path
 
 
-def test_a_run_is_shown_when_it_has_run_again_and_until_then_the_page_is_live(
+def test_a_run_is_shown_once_a_part_of_it_is_equal_and_until_then_the_page_is_live(
     run_player, checks, run_file, file, sent
 ):
     run_player.open(run_file)
     run_player.send(MOVE)
     assert (run_player.state.name, run_player.state.run) == ("", Check.verdict)
     assert (run_player.latest(), sent) == (LIVE, [MOVE])
-    checks[0].end(file)
+    checks[0].show(file)
     until(shows(run_player, 0))
     assert (run_player.state.name, run_player.state.run) == ("a.run", Check.verdict)
+    run_player.send(MOVE)
+    assert (sent, run_player.refusals) == ([MOVE], 1)
     run_player.set_marks(lambda marks: (Mark(2.0, "here"),))
     assert read_marks(run_file) == (Mark(2.0, "here"),)
     run_player.close()
     assert checks[0].is_closed
-    assert run_player.state.run is None
+    assert (run_player.state.run, run_player.state.stopped) == (None, "a.run: stopped")
+
+
+def test_a_run_is_shown_as_far_as_it_is_equal_and_further_when_there_is_more(
+    run_player, checks, run_file, file, write_mcap
+):
+    more = write_mcap([("/a", 20_000_000_000, b"12345678")], name="more.mcap")
+    run_player.open(run_file)
+    checks[0].show(file)
+    until(shows(run_player, 0))
+    run_player.act(lambda playback: playback.seek(39.0))
+    until(shows(run_player, 10_000_000_000))
+    assert (run_player.state.open_s, run_player.state.length_s) == (10.0, 40.0)
+    until(lambda: run_player.state.curve is not None and run_player.state.curve.curve is not None)
+    before = run_player.state.curve.curve
+    assert np.flatnonzero(~np.isnan(before.low)).tolist() == [0, 250], "columns of the whole run"
+    checks[0].show(file, more, until_s=20.0, grows=False)
+    until(lambda: run_player.state.curve.curve is not before)
+    assert np.flatnonzero(~np.isnan(run_player.state.curve.curve.low)).tolist() == [0, 250, 500]
+    run_player.act(lambda playback: playback.seek(39.0))
+    until(shows(run_player, 20_000_000_000))
+
+
+def test_a_part_that_cannot_be_read_says_so(run_player, checks, run_file, tmp_path):
+    (tmp_path / "bad.mcap").write_bytes(b"no recording")
+    run_player.open(run_file)
+    checks[0].show(tmp_path / "bad.mcap")
+    assert (run_player.state.name, run_player.latest()) == ("", LIVE)
+    assert "bad.mcap cannot be read" in run_player.state.run.text
 
 
 def test_a_run_that_is_left_is_not_shown_any_more(run_player, checks, run_file, file):
     run_player.open(run_file)
     run_player.open(file)
     until(shows(run_player, 0))
-    checks[0].end(file)
+    checks[0].show(file)
     assert run_player.state.run is None
     assert run_player.state.name == "a.mcap"
 
 
 def test_a_run_that_cannot_run_again_leaves_the_page_live(run_player, checks, run_file):
     run_player.open(run_file)
-    checks[0].end(None)
+    checks[0].show(grows=False)
     assert run_player.latest() is LIVE
     assert run_player.state.run is not None

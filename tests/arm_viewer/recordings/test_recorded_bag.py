@@ -1,5 +1,7 @@
 """What each topic of a recording said at a time."""
 
+from contextlib import closing
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -134,3 +136,16 @@ def test_damage_in_a_chunk_is_told_when_it_is_read(write_mcap, opened):
 
 def test_a_topic_that_is_not_there_never_said_anything(write_mcap, opened):
     assert opened(write_mcap([("/a", 10, b"one")])).last("/b", 10) is None
+
+
+def test_a_recording_gets_longer_by_another_file(write_mcap):
+    files = [
+        write_mcap([("/a", 0, b"first"), ("/a", 10, b"second")], name="bag/bag_0.mcap"),
+        write_mcap([("/a", 20, b"third"), ("/b", 30, b"other")], name="bag/bag_1.mcap"),
+    ]
+    with closing(RecordedBag(files[0].parent, files[:1])) as bag:
+        assert (bag.last("/a", 25).data, bag.end_ns) == (b"second", 10)
+        assert not bag.extend(files[:1])
+        assert bag.extend(files)
+        assert (bag.last("/a", 25).data, bag.last("/a", 5).data) == (b"third", b"first")
+        assert (bag.end_ns, bag.topics["/a"].count, list(bag.topics)) == (30, 3, ["/a", "/b"])

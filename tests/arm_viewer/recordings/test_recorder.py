@@ -60,8 +60,8 @@ def test_a_run_is_recorded_by_the_simulation_into_a_file(tmp_path):
     script = """
 import signal, sys, time
 signal.signal(signal.SIGINT, signal.default_int_handler)
-print("recording to", sys.argv[-1], flush=True)
 try:
+    print("recording to", sys.argv[-1], flush=True)
     while True:
         time.sleep(0.05)
 except KeyboardInterrupt:

@@ -21,7 +21,10 @@ DIFFERENT = {
 }
 SCRIPT = """
 import pathlib, sys
-pathlib.Path(sys.argv[sys.argv.index("--bag") + 1]).mkdir()
+bag = pathlib.Path(sys.argv[sys.argv.index("--bag") + 1])
+bag.mkdir()
+for number in range(2):
+    (bag / f"a_{number}.mcap").touch()
 print(sys.argv[1])
 """
 
@@ -38,16 +41,22 @@ def run_file(tmp_path):
 
 @pytest.fixture
 def checked(run_file):
-    """Return a function that lets a script verify a run, and returns the check and its bag."""
+    """Return a function that lets a script verify a run; it returns the check and its parts."""
     checks = []
 
     def check(script, *words):
         over = threading.Event()
-        bags = []
+        parts = []
+
+        def take(check):
+            parts.append(check.part)
+            if not check.part.grows:
+                over.set()
+
         command = (sys.executable, "-c", script, *words)
-        checks.append(RunCheck(run_file, lambda _, bag: (bags.append(bag), over.set()), command))
+        checks.append(RunCheck(run_file, take, command))
         assert over.wait(TIMEOUT_S)
-        return checks[-1], bags[0]
+        return checks[-1], parts
 
     yield check
     for check in checks:
@@ -72,20 +81,35 @@ def test_a_run_without_a_period_is_not_called_verified(checked):
 
 
 def test_equal_periods_are_counted(checked):
-    check, bag = checked(SCRIPT, lines({"periods": 50, **LENGTHS}, {"result": EQUAL}))
+    check, (part,) = checked(SCRIPT, lines({"periods": 50, **LENGTHS}, {"result": EQUAL}))
     assert (check.verdict.is_over, check.verdict.is_equal) == (True, True)
     assert check.verdict.text == "verified: all 100 control periods are equal"
+    bag = part.files[0].parent
     assert (bag.name, check.verdict.name) == ("a.run", "a.run")
-    check.close()
+    assert (part.until_s, part.grows) == (1.0, False)
+    assert check.close() == "", "nothing was left to compare"
     assert not bag.exists()
 
 
+def test_what_is_equal_so_far_can_be_shown_file_by_file(checked):
+    told = ({"periods": 50, "file": "a_0.mcap", **LENGTHS}, {"result": EQUAL})
+    check, (first, last) = checked(SCRIPT, lines(*told))
+    assert ([file.name for file in first.files], first.until_s, first.grows) == (
+        ["a_0.mcap"],
+        0.5,
+        True,
+    )
+    assert sorted(file.name for file in last.files) == ["a_0.mcap", "a_1.mcap"]
+    assert (last.until_s, check.verdict.length_s) == (1.0, 1.0)
+
+
 def test_a_difference_is_told_with_its_time(checked):
-    check, bag = checked(SCRIPT, lines({"result": DIFFERENT}))
+    check, (part,) = checked(SCRIPT, lines({"result": DIFFERENT}))
     assert not check.verdict.is_equal
     assert check.verdict.text.startswith("differs at 0.21 s, in control period 20: position of j")
-    assert "nothing after the difference is shown" in check.verdict.details
-    assert bag is not None
+    assert check.verdict.differences == ("position of joint j0: 1 instead of 2",)
+    assert "0 to 0.20 of 1.00 s is equal" in check.verdict.details[-1]
+    assert (part.until_s, check.verdict.differs_s) == (0.2, pytest.approx(0.21))
 
 
 def test_progress_is_told_until_then(run_file):
@@ -94,11 +118,13 @@ def test_progress_is_told_until_then(run_file):
     check = RunCheck(run_file, lambda *_: None, command)
     deadline_s = time.monotonic() + TIMEOUT_S
     try:
-        while "0.5 of 1.0 s" not in check.verdict.text:
+        while "equal so far: 0.50 of 1.00 s" not in check.verdict.text:
             assert time.monotonic() < deadline_s
             time.sleep(0.01)
+        assert not check.verdict.is_equal, "the rest may differ"
     finally:
-        check.close()
+        said = check.close()
+    assert "stopped; 0 to 0.50 of 1.00 s is equal, the rest was not compared" in said
     for thread in threading.enumerate():
         if thread.name == "run check":
             thread.join(TIMEOUT_S)
@@ -115,10 +141,19 @@ def test_progress_is_told_until_then(run_file):
     ],
 )
 def test_what_cannot_run_again_says_why(checked, script, said):
-    check, bag = checked(script)
-    assert bag is None
+    check, (part,) = checked(script)
+    assert part.files == ()
     assert check.verdict.text.startswith("cannot be run again: ")
     assert said in check.verdict.text
+
+
+def test_a_run_that_is_damaged_further_on_is_equal_up_to_there(checked):
+    script = f"{SCRIPT}sys.exit('a.run is damaged')"
+    check, (part,) = checked(script, lines({"periods": 50, **LENGTHS}))
+    assert check.verdict.text == (
+        "0 to 0.50 of 1.00 s is equal, then it cannot be run again: a.run is damaged"
+    )
+    assert (check.verdict.is_equal, part.until_s, len(part.files)) == (False, 0.5, 2)
 
 
 def test_a_program_that_cannot_be_started_is_named(run_file):

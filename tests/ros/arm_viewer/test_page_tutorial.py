@@ -61,7 +61,7 @@ def test_a_stranger_picks_the_cylinder_and_replays_it(page, tmp_path):
         recorder.stop()
         page.until(lambda: not recorder.state.is_recording)
         player.open(recorder.state.path)
-        page.until(lambda: player.state.name or player.state.run.is_over)
+        page.until(lambda: player.state.run.is_over)
         assert player.state.run.text.startswith("verified: all "), player.state.run
         page.until(lambda: player.state.name == recorder.state.path.name)
         player.act(lambda playback: playback.seek(playback.length_s))

@@ -5,7 +5,8 @@ import sys
 
 import numpy as np
 import pytest
-from page_user import DESK, PHONE, PageUser
+from altered_run import write_altered_run
+from page_user import DESK, KEEP_WHAT_IS_SAID, PHONE, PageUser
 from programs import Program
 from rclpy.serialization import serialize_message
 from robots import joint, link, robot
@@ -19,13 +20,25 @@ from arm_sim import Simulation
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 
 LENGTH_S = 20.0
+LONG_S = 400.0
+KEEP_VERDICTS = """
+  window.verdicts = [];
+  addEventListener("DOMContentLoaded", () => {
+    const verdict = document.getElementById("arm-run");
+    new MutationObserver(() => {
+      const place = document.getElementById("arm-track").getBoundingClientRect();
+      window.verdicts.push([verdict.textContent, place.width > 0]);
+    }).observe(verdict, { childList: true, characterData: true, subtree: true });
+  });
+"""
+"""A script before those of the page: it keeps what was said of a run, and whether it was shown."""
 S = 1_000_000_000
 URDF = robot(link("base"), link("hand"), joint("j0", "base", "hand"))
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Return a folder with a bag of 20 s, in which joint j0 moves by 0.05 rad/s, and a run.
+    """Return a folder with a bag of 20 s, in which joint j0 moves by 0.05 rad/s, and with runs.
 
     The bag has a depth image of 2x2 pixels: 0.5 m and 1 m above 1.5 m and 2 m.
     """
@@ -48,6 +61,12 @@ def folder(tmp_path_factory):
     writer.close()
     with Simulation("arm", record=folder / "bug.run", arguments={"camera": "none"}) as simulation:
         simulation.run(0.2)
+    write_altered_run(folder / "bug.run", folder / "altered.run", 12, "position of joint j1", 0.5)
+    content = (folder / "bug.run").read_bytes()
+    (folder / "broken.run").write_bytes(content[:200] + bytes(100) + content[300:])
+    with Simulation("arm", record=folder / "long.run", arguments={"camera": "none"}) as simulation:
+        simulation["position_controller"].command([0.4, 0.3, 0.2, 0.1])
+        simulation.run(LONG_S)
     return folder
 
 
@@ -57,7 +76,8 @@ def timeline(page_at, folder):
     words = ("view", folder / "bag", "--recordings", folder, "--port", "0")
     viewing = Program([sys.executable, "-m", "arm_cli", *words])
     line = viewing.wait_for_line("the page is at http://")
-    yield Timeline(page_at(re.search(r"http://\S+", line)[0]))
+    script = KEEP_WHAT_IS_SAID + KEEP_VERDICTS
+    yield Timeline(page_at(re.search(r"http://\S+", line)[0], script))
     viewing.close()
 
 
@@ -82,6 +102,23 @@ class Timeline(PageUser):
     def joint(self):
         slider = "xpath=//label[.='j0']/following::*[@role='slider'][1]"
         return float(self.page.locator(slider).get_attribute("aria-valuenow"))
+
+    def open(self, name):
+        self.page.evaluate("window.verdicts.length = 0")
+        self.click("Recordings")
+        self.click(f"Open {name}")
+
+    def is_whole(self, name):
+        """Return whether an element is within the window, and all of its text within it."""
+        return self.page.evaluate(
+            """(name) => {
+              const element = document.getElementById(name);
+              const { left, right, top, bottom } = element.getBoundingClientRect();
+              return left >= 0 && right <= innerWidth && top >= 0 && bottom <= innerHeight &&
+                element.scrollWidth <= element.clientWidth + 1;
+            }""",
+            name,
+        )
 
     def until_near(self, read, wanted, tolerance):
         assert self.wait_until(lambda: abs(read() - wanted) < tolerance, f"near {wanted}")
@@ -162,16 +199,105 @@ def test_back_to_live_and_from_the_list_into_the_recording(timeline):
     timeline.until_near(timeline.moment_s, 0.0, 0.001)
 
 
-def test_a_run_is_verified_and_then_shown(timeline):
-    timeline.click("Recordings")
-    timeline.click("Open bug.run")
-    timeline.wait_until(lambda: timeline.text("arm-run").startswith("✓ verified: all 20"), "equal")
+@pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
+def test_a_good_run_is_equal_to_its_end(timeline, size):
+    timeline.resize(size)
+    try:
+        timeline.open("bug.run")
+        timeline.wait_until(
+            lambda: timeline.text("arm-run") == "✓ verified: all 20 control periods are equal",
+            "equal",
+        )
+        timeline.page.locator("#arm-timeline").wait_for(state="visible")
+        assert timeline.text("arm-banner-kind") == "RECORDED RUN"
+        assert timeline.is_whole("arm-verdict")
+        timeline.drag(0.5)
+        timeline.until_near(timeline.moment_s, 0.1, 0.02)
+        timeline.click("Back to live")
+        timeline.page.locator("#arm-timeline").wait_for(state="hidden")
+        assert timeline.text("arm-stopped") == ""
+    finally:
+        timeline.resize(DESK)
+
+
+@pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
+def test_a_run_with_another_recorded_number_says_where_it_differs(timeline, size):
+    timeline.resize(size)
+    try:
+        timeline.open("altered.run")
+        timeline.wait_until(lambda: timeline.text("arm-run").startswith("≠ differs"), "differs")
+        timeline.page.locator("#arm-timeline").wait_for(state="visible")
+        said = timeline.text("arm-run")
+        found = re.match(
+            r"≠ differs at 0\.13 s, in control period 12: position of joint j1: (\S+) instead of "
+            r"(\S+), by -0\.5$",
+            said,
+        )
+        assert found, said
+        assert float(found[2]) - float(found[1]) == pytest.approx(0.5)
+        assert timeline.is_whole("arm-mark")
+        # What is beyond the difference was not compared, and is not shown.
+        timeline.drag(0.95)
+        timeline.until_near(timeline.moment_s, 0.12, 1e-6)
+        timeline.page.locator("#arm-verdict").click()
+        menu = timeline.page.locator("#arm-run-menu")
+        menu.get_by_text("0 to 0.12 of 0.20 s is equal").wait_for()
+        assert timeline.is_whole("arm-run-menu")
+        assert timeline.text("arm-run-differences") == said.split(": ", 1)[1]
+        timeline.drag(0.1)
+        timeline.page.locator("#arm-verdict").click()
+        timeline.click("Go to the last equal moment")
+        timeline.until_near(timeline.moment_s, 0.12, 1e-6)
+    finally:
+        timeline.click("Back to live")
+        timeline.page.locator("#arm-timeline").wait_for(state="hidden")
+        timeline.resize(DESK)
+
+
+def test_a_run_plays_while_it_is_verified_and_only_what_is_equal_is_shown(timeline):
+    timeline.open("long.run")
     timeline.page.locator("#arm-timeline").wait_for(state="visible")
-    assert timeline.text("arm-banner-kind") == "RECORDED RUN"
-    timeline.drag(0.5)
-    timeline.until_near(timeline.moment_s, 0.1, 0.02)
+    timeline.page.locator("#arm-deck-speed").select_option("10")
+    timeline.page.locator("#arm-deck-play").click()
+    timeline.wait_until(lambda: timeline.moment_s() > 1.0, "it plays")
+    timeline.wait_until(lambda: timeline.text("arm-run").startswith("✓ verified: all 40000"), "end")
+    verdicts = timeline.page.evaluate("window.verdicts")
+    meanwhile = [text for text, is_shown in verdicts if is_shown and text.startswith("…")]
+    equal = re.compile(r"… equal so far: (\S+) of 400.00 s")
+    compared_s = [float(found[1]) for found in map(equal.fullmatch, meanwhile) if found]
+    assert len(compared_s) == len(meanwhile) > 0, verdicts
+    assert compared_s == sorted(compared_s)
+    assert compared_s[-1] < LONG_S
+    timeline.page.locator("#arm-track").press("End")
+    timeline.until_near(timeline.moment_s, LONG_S, 0.001)
     timeline.click("Back to live")
     timeline.page.locator("#arm-timeline").wait_for(state="hidden")
+
+
+def test_a_verification_that_is_left_says_what_it_did_not_compare(timeline):
+    timeline.open("long.run")
+    timeline.page.locator("#arm-timeline").wait_for(state="visible")
+    timeline.click("Back to live")
+    said = timeline.says("verification stopped")
+    found = re.fullmatch(
+        r"long\.run: verification stopped; 0 to (\S+) of 400\.00 s is equal, the rest was not "
+        r"compared",
+        said,
+    )
+    assert found, said
+    assert 0.0 < float(found[1]) < LONG_S
+    assert timeline.text("arm-stopped") == said
+    timeline.page.locator("#arm-timeline").wait_for(state="hidden")
+
+
+def test_a_damaged_run_is_told_in_a_sentence_and_the_page_stays_live(timeline):
+    timeline.open("broken.run")
+    timeline.wait_until(lambda: "cannot be run again" in timeline.text("arm-banner"), "a sentence")
+    assert "broken.run is damaged" in timeline.text("arm-banner")
+    assert "the page is live" in timeline.text("arm-banner")
+    assert not timeline.page.locator("#arm-timeline").is_visible()
+    timeline.click("Close")
+    timeline.page.locator("#arm-banner").wait_for(state="hidden")
 
 
 def test_the_page_records_a_bag_that_it_opens(timeline, folder):
