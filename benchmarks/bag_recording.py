@@ -76,7 +76,7 @@ def record(seconds: float, compression: str) -> harness.Row:
         environment = harness.client_environment()
         # As a camera process of the suite: with the default shared memory of 512 KiB its own
         # pictures overwrite what it sends beside them.
-        environment = camera_environment(environment)
+        environment = camera_environment(environment, 3 * WIDTH * HEIGHT)
         bag = Path(folder) / "bag"
         arm = [sys.executable, "-m", "arm_cli", "bag"]
         recorder = subprocess.Popen(

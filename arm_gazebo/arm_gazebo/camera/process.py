@@ -76,35 +76,40 @@ LARGE_PROFILE = "config/dds_images.xml"
 SMALL_PROFILE = "config/dds_images_small.xml"
 ROOM_FOR_LARGE_BYTES = 128 << 20
 """Free shared memory required to use the large segment (32 MiB); Docker's default is 64 MiB."""
+FITS_SMALL_BYTES = 2 << 20
+"""Largest frame of which four fit into the small segment (8 MiB); it is all used in any case."""
 LAUNCHER = "launch_py"
 
 
-def camera_environment(environ: Mapping[str, str], shm: str = "/dev/shm") -> dict[str, str]:
+def camera_environment(
+    environ: Mapping[str, str], frame_bytes: int, shm: str = "/dev/shm"
+) -> dict[str, str]:
     """Return the environment for a camera process.
 
     Args:
         environ: the simulation's own environment.
-        shm: folder of the shared memory, whose free space selects the profile.
+        frame_bytes: size of a frame of all cameras, which with the free space selects the profile.
+        shm: folder of the shared memory.
     """
     own = {name: value for name, value in environ.items() if name not in NOT_INHERITED}
     # Otherwise importing mujoco loads a window toolkit.
     own["MUJOCO_GL"] = "off"
     use_general_profile(own)
-    profile = _profile(own, shm)
+    profile = _profile(own, frame_bytes, shm)
     if profile is not None:
         own[profile_variable()] = str(profile)
     return own
 
 
-def _profile(environ: Mapping[str, str], shm: str) -> Path | None:
+def _profile(environ: Mapping[str, str], frame_bytes: int, shm: str) -> Path | None:
     """Return the profile to use; None to keep the user's."""
     if any(environ.get(name) and not _is_launchers(environ[name]) for name in PROFILE_VARIABLES):
         return None
     folder = suite_package(PACKAGE)
     if folder is None:
         return None
-    has_room = _free_bytes(shm) >= ROOM_FOR_LARGE_BYTES
-    profile = folder / (LARGE_PROFILE if has_room else SMALL_PROFILE)
+    large = frame_bytes > FITS_SMALL_BYTES and _free_bytes(shm) >= ROOM_FOR_LARGE_BYTES
+    profile = folder / (LARGE_PROFILE if large else SMALL_PROFILE)
     return profile if profile.is_file() else None
 
 
@@ -190,8 +195,10 @@ class CameraProcess:
         ]
         self._backend = None
         self._started_s = self._clock()
+        frame_bytes = sum(camera.frame_bytes for camera in self._settings.cameras)
+        environment = camera_environment(self._environ, frame_bytes)
         try:
-            self._child.start(socket_fd, arguments, camera_environment(self._environ))
+            self._child.start(socket_fd, arguments, environment)
         except OSError as error:
             self._restart_later(f"the camera process cannot be started ({error})")
 

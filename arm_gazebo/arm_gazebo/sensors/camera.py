@@ -211,6 +211,10 @@ than the clip distance still hides what is behind it, and its pixels are reporte
 SAME_FRAME = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
+COLOUR_BYTES, DEPTH_BYTES, POINT_BYTES = 3, 4, 16
+"""Size of a pixel in an image, a depth image and a point cloud."""
+
+
 @dataclass(frozen=True, slots=True)
 class CameraSensor:
     """The optics, the rate and the topics of one camera.
@@ -276,6 +280,16 @@ class CameraSensor:
     def topics(self) -> tuple[str, ...]:
         """Every topic of the camera."""
         return (*self.image_topics, *self.depth_topics, *self.points_topics, *self.info_topics)
+
+    @property
+    def frame_bytes(self) -> int:
+        """Size of the messages of one frame, if all topics have subscribers."""
+        of_pixel = (
+            COLOUR_BYTES * len(self.image_topics)
+            + DEPTH_BYTES * len(self.depth_topics)
+            + POINT_BYTES * len(self.points_topics)
+        )
+        return of_pixel * self.width * self.height
 
     @property
     def measures_depth(self) -> bool:

@@ -7,8 +7,11 @@ import pytest
 
 from arm_gazebo.camera import process as module
 from arm_gazebo.camera.process import camera_environment
+from arm_gazebo.sensors.camera import CameraSensor
 
 VARIABLE = "FASTRTPS_DEFAULT_PROFILES_FILE"
+LARGE = 3 << 20
+"""Size in bytes of a frame that needs the large profile."""
 
 
 @pytest.fixture
@@ -20,29 +23,38 @@ def shared_memory(monkeypatch):
     return free
 
 
-@pytest.mark.parametrize(("mebibytes", "name"), [(1000, "dds_images"), (64, "dds_images_small")])
-def test_the_profile_fits_the_shared_memory(shared_memory, mebibytes, name):
+@pytest.mark.parametrize(
+    ("mebibytes", "camera", "name"),
+    [
+        (1000, CameraSensor("a", "l", "f", 800, 800, image_topics=("image",)), "dds_images_small"),
+        (1000, CameraSensor("a", "l", "f", 1280, 720, image_topics=("image",)), "dds_images"),
+        (1000, CameraSensor("a", "l", "f", 640, 480, points_topics=("points",)), "dds_images"),
+        (1000, CameraSensor("a", "l", "f", 640, 480, depth_topics=("depth",)), "dds_images_small"),
+        (64, CameraSensor("a", "l", "f", 1280, 720, image_topics=("image",)), "dds_images_small"),
+    ],
+)
+def test_the_profile_fits_the_frames_and_the_shared_memory(shared_memory, mebibytes, camera, name):
     shared_memory(mebibytes)
-    profile = Path(camera_environment({})[VARIABLE])
+    profile = Path(camera_environment({}, camera.frame_bytes)[VARIABLE])
     assert profile.stem == name
     assert profile.is_file()
 
 
 def test_a_missing_shared_memory_folder_means_none(tmp_path):
-    profile = camera_environment({}, shm=str(tmp_path / "none"))[VARIABLE]
+    profile = camera_environment({}, LARGE, shm=str(tmp_path / "none"))[VARIABLE]
     assert Path(profile).stem == "dds_images_small"
 
 
 @pytest.mark.parametrize("variable", [VARIABLE, "FASTDDS_DEFAULT_PROFILES_FILE"])
 def test_a_profile_of_the_users_own_stays(shared_memory, variable):
-    environment = camera_environment({variable: "/home/me/dds.xml"})
+    environment = camera_environment({variable: "/home/me/dds.xml"}, LARGE)
     assert environment[variable] == "/home/me/dds.xml"
     assert set(environment) == {variable, "MUJOCO_GL"}
 
 
 def test_the_launchers_profile_is_not_the_users_own(shared_memory):
     general = f"{sys.prefix}/share/launch_py/config/dds.xml"
-    assert Path(camera_environment({VARIABLE: general})[VARIABLE]).stem == "dds_images"
+    assert Path(camera_environment({VARIABLE: general}, LARGE)[VARIABLE]).stem == "dds_images"
 
 
 def test_a_camera_of_a_simulation_that_keeps_to_this_host_does_so_by_its_own_profile(shared_memory):
@@ -50,14 +62,15 @@ def test_a_camera_of_a_simulation_that_keeps_to_this_host_does_so_by_its_own_pro
         {
             VARIABLE: f"{sys.prefix}/share/launch_py/config/dds_localhost.xml",
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
-        }
+        },
+        LARGE,
     )
     assert Path(environment[VARIABLE]).stem == "dds_images"
     assert environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
 
 
 def test_the_child_does_not_inherit_the_notify_socket(shared_memory):
-    environment = camera_environment({"NOTIFY_SOCKET": "/run/x", "HOME": "/home/me"})
+    environment = camera_environment({"NOTIFY_SOCKET": "/run/x", "HOME": "/home/me"}, LARGE)
     assert "NOTIFY_SOCKET" not in environment
     assert environment["HOME"] == "/home/me"
 
