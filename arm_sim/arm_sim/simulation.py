@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from arm_control.controllers.joint_trajectory import GoalResult
     from arm_gazebo.run.run import SimulationRun
     from arm_gazebo.world.contacts import Contact
+    from arm_gazebo.world.entity_properties import EntityProperties
     from arm_sim.cameras import Camera, RobotCameras
     from arm_sim.planning import MotionGoal, MotionPlanning
     from arm_sim.trajectory import AnyTrajectory, JointTrajectory
@@ -342,6 +343,43 @@ class Simulation:
         in_world = self._open.editor.in_world
         seen = in_world(np.eye(4), name)
         return np.linalg.inv(in_world(np.eye(4), frame)) @ seen if frame else seen
+
+    @property
+    def gravity(self) -> np.ndarray:
+        """The present gravity in the world, m/s2, shape (3,)."""
+        return np.array(self._open.properties.gravity)
+
+    def set_gravity(self, gravity: Sequence[float]) -> None:
+        """Set the gravity, m/s2, shape (3,); drives hold and plan under the new one.
+
+        Raises:
+            RequestError: it is not three numbers within ±100 m/s2.
+        """
+        self._open.properties.set_gravity(gravity)
+
+    def properties(self, name: str) -> "EntityProperties":
+        """Return the mass and friction of an entity that is not a robot.
+
+        Raises:
+            RequestError: there is none of that name, or it is a robot.
+        """
+        return self._open.properties.of(name)
+
+    def set_properties(
+        self, name: str, *, mass_kg: float | None = None, friction: float | None = None
+    ) -> None:
+        """Set mass or friction of an entity that is not a robot; `reset` puts its own back.
+
+        Args:
+            name: name of the entity.
+            mass_kg: its mass; it becomes evenly denser or lighter. None to leave it.
+            friction: coefficient of sliding friction of all its shapes; None to leave it. Of two
+                shapes in contact the lower one counts; of two above 1, the higher one.
+
+        Raises:
+            RequestError: it has no such property, or cannot have this value.
+        """
+        self._open.properties.change(name, mass_kg, friction)
 
     def contacts(self, name: str | None = None) -> "tuple[Contact, ...]":
         """Return the contacts of an entity or a link in the present state.

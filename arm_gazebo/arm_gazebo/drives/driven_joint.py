@@ -182,6 +182,13 @@ class DrivenJoint:
         self.sure_braking = share * self._bounds.braking
         self._derive()
 
+    def rebound(self, bounds: MotionBounds, share: float) -> None:
+        """Plan with other bounds; see `limit_effort` for the share."""
+        if bounds != self._bounds:
+            self._bounds = bounds
+            self._jerkless, self._slack = bounds.jerkless, bounds.slack
+            self.limit_effort(self.effort_limit, share)
+
     def _derive(self) -> None:
         """Note what follows from the effort limit, as it is needed in every tick."""
         self._strength = min(self.effort_limit, UNLIMITED)

@@ -116,9 +116,25 @@ class Servo:
         self._bind(model, data, joints, tuning)
         for driven, joint in zip(self._joints, joints, strict=True):
             driven.joint = joint
+        self._rebound(tuning)
         self.set_friction_solvers()
         # The activations that hold a resting joint must be written to the new state.
         self._awake_ticks = self._settle_ticks
+
+    def retune(self, tuning: ServoTuning) -> None:
+        """Continue with other bounds of the same gains, because the gravity has changed."""
+        self._tuning = tuning
+        self._rebound(tuning)
+        # The efforts that hold a resting joint are others now.
+        self._wake()
+
+    def _rebound(self, tuning: ServoTuning) -> None:
+        for index, driven in enumerate(self._joints):
+            driven.rebound(tuning.bounds(index), self._share(index, driven.effort_limit))
+
+    def _wake(self) -> None:
+        """Plan anew in the next period."""
+        self._awake_ticks, self._way_to_renew = self._settle_ticks, 0.0
 
     def _bind(
         self,
@@ -165,7 +181,7 @@ class Servo:
         driven.enter(mode, position, float(self._qvel[driven.joint.dof_address]))
         self._set_gains(index, mode)
         self._find_servoed()
-        self._awake_ticks, self._way_to_renew = self._settle_ticks, 0.0
+        self._wake()
 
     def command(self, index: int, value: float) -> None:
         """Take a finite command, within the joint's limits, in the unit of the joint's mode."""
@@ -178,10 +194,13 @@ class Servo:
         driven = self._joints[index]
         own = driven.joint.effort
         limit = limit if 0.0 < limit < own else own
-        needed = self._tuning.braking_efforts[index]
-        driven.limit_effort(limit, min(1.0, EFFORT_SHARE * limit / needed))
+        driven.limit_effort(limit, self._share(index, limit))
         self._set_gains(index, driven.mode)
-        self._awake_ticks, self._way_to_renew = self._settle_ticks, 0.0
+        self._wake()
+
+    def _share(self, index: int, limit: float) -> float:
+        """Return the fraction of the normal braking deceleration that an effort limit allows."""
+        return min(1.0, EFFORT_SHARE * limit / self._tuning.braking_efforts[index])
 
     def stopping_point(self, index: int) -> float:
         """Return where a joint will stop without a new command, in rad or m."""

@@ -156,9 +156,8 @@ def tune(
     damping = 2.0 * armature / model.opt.timestep
     jerkless = speeds / (PERIODS_TO_FULL_SPEED * period_s)
     jerkless[np.isinf(efforts)] = np.minimum(jerkless[np.isinf(efforts)], DEFAULT_ACCELERATION)
-    spare = np.maximum(EFFORT_SHARE * (efforts - gravity), MIN_EFFORT_SHARE * efforts)
     worst = inertia + np.diag(armature + felt)
-    braking = _shared_accelerations(worst, spare, jerkless)
+    braking = _braking(worst, efforts, gravity, jerkless)
     return ServoTuning(
         stiffness=damping / TIME_CONSTANT_S,
         damping=damping,
@@ -199,6 +198,45 @@ def retune(
     return replace(tuning, coupling=coupling, gears=gears)
 
 
+def tuned_for_gravity(
+    model: mujoco.MjModel, joints: Sequence[RobotJoint], qpos: Array, tuning: ServoTuning
+) -> ServoTuning:
+    """Return the tuning of the same joints under the gravity of this model.
+
+    Gains stay. The accelerations that every pose allows are those that `tune` would find.
+
+    Args:
+        model: a model that no simulation uses; its armatures are overwritten.
+        joints: the driven joints.
+        qpos: see `tune`.
+        tuning: tuning of the joints under another gravity.
+    """
+    dofs = [joint.dof_address for joint in joints]
+    model.dof_armature[dofs] = 0.0
+    _, felt = _gear(model, tuning.coupling, dofs, _rotor(tuning.sizing, model.opt.timestep))
+    inertia, _, gravity = _sample(model, joints, tuning.coupling, qpos)
+    worst = inertia + np.diag(tuning.armature + felt)
+    braking = _braking(worst, tuning.efforts, gravity, tuning.jerkless)
+    return replace(tuning, braking=braking, braking_efforts=worst @ braking, gravity=gravity)
+
+
+def rederive(model: mujoco.MjModel, joints: Sequence[RobotJoint], tuning: ServoTuning) -> None:
+    """Let MuJoCo derive its constants again after masses have changed; armatures stay as they are.
+
+    Args:
+        model: the model that runs.
+        joints: the driven joints.
+        tuning: their tuning in this model.
+    """
+    dofs = [joint.dof_address for joint in joints]
+    driven = [*dofs, *(follower for pairs in tuning.gears for follower, _ in pairs)]
+    present = model.dof_armature[driven]
+    gears, _ = _gear(model, tuning.coupling, dofs, _rotor(tuning.sizing, model.opt.timestep))
+    _derive(model, mujoco.MjData(model), dofs, tuning.shares, gears)
+    for dof, armature in zip(driven, present.tolist(), strict=True):
+        set_armature(model, dof, armature)
+
+
 def weak_drives(
     model: mujoco.MjModel, joints: Sequence[RobotJoint], tuning: ServoTuning
 ) -> Iterator[tuple[str, str]]:
@@ -227,6 +265,19 @@ def weak_drives(
                 f"{limit} moves it against its damping of {damping:.4g} at {fastest:.3g} at most, "
                 f"far below {bound} {joint.velocity:.4g}",
             )
+
+
+def _braking(worst: Array, efforts: Array, gravity: Array, jerkless: Array) -> Array:
+    """Return the accelerations (n,) that all joints can reach at once in any pose.
+
+    Args:
+        worst: largest absolute inertia matrix, shape (n, n).
+        efforts: effort limits, shape (n,).
+        gravity: largest efforts against gravity, shape (n,).
+        jerkless: highest accelerations in any case, shape (n,).
+    """
+    spare = np.maximum(EFFORT_SHARE * (efforts - gravity), MIN_EFFORT_SHARE * efforts)
+    return _shared_accelerations(worst, spare, jerkless)
 
 
 def resistance(model: mujoco.MjModel, coupling: Array) -> tuple[list[float], list[float]]:

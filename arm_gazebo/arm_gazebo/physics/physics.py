@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Collection, Iterator, Mapping
+from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,15 +10,24 @@ import mujoco
 import numpy as np
 
 from arm_control.run_inputs import InputGate, run_input, run_input_noted_as
+from arm_control.state.encoding import encode
 from arm_gazebo.drives.driven_joint import DriveMode
 from arm_gazebo.drives.servo import Servo
-from arm_gazebo.drives.servo_tuning import ServoTuning, retune, tune, weak_drives
+from arm_gazebo.drives.servo_tuning import (
+    ServoTuning,
+    rederive,
+    retune,
+    tune,
+    tuned_for_gravity,
+    weak_drives,
+)
 from arm_gazebo.errors import RecordingError, TimingError
 from arm_gazebo.model.built_model import BuiltModel, SavedModel
 from arm_gazebo.physics.contact_gate import ContactGate
 from arm_gazebo.physics.faults import Distortion, PhysicsFaults
 from arm_gazebo.physics.state_probe import StateProbe, WorldState
 from arm_gazebo.physics.state_transfer import PhysicsState, StateTransfer
+from arm_gazebo.physics.world_properties import UNCHANGED, OwnProperties, PropertyChanges
 from arm_gazebo.physics_timing import DIVIDES_WITHIN, PhysicsTiming
 from arm_gazebo.robot.actuation import RobotJoint
 from arm_node.workarounds.profiler import switch_off_profiler
@@ -46,6 +56,11 @@ def _describe_swap(arguments: Mapping[str, Any]) -> Mapping[str, object]:
     return {"model": following.saved, "roots": following.roots}
 
 
+def _describe_properties(arguments: Mapping[str, Any]) -> Mapping[str, object]:
+    """Return what a recording stores for `set_properties`; a replay finds the tuning itself."""
+    return {"changes": arguments["changes"]}
+
+
 class Physics:
     """Advances a model by control periods; used by one thread.
 
@@ -56,6 +71,7 @@ class Physics:
         proportional_gain: of position commands, see `DrivenJoint`; 0 for the fastest approach.
 
     Attributes:
+        properties: what the user has changed of gravity, masses and friction.
         faults: the faults of joints and readings; none unless they are requested.
         input_gate: notes the inputs while a run is recorded, see `arm_control.run_inputs`.
 
@@ -80,6 +96,7 @@ class Physics:
             )
         self.built = built
         self.timing = timing
+        self.properties, self._own_properties = UNCHANGED, OwnProperties(built.model)
         self.model = built.model
         self.data = mujoco.MjData(built.model)
         self._saved_qpos = self.data.qpos.copy()
@@ -186,10 +203,13 @@ class Physics:
             "gate": self._gate.save_state(),
             "state_number": self.probe.number,
             "servo": self.servo.save_state(),
+            "properties": self.properties,
         }
 
     def load_state(self, state: dict[str, Any]) -> None:
         """Restore a saved state of the same model; call it between two `advance` calls."""
+        # States of older versions have the world's own properties.
+        self._change_properties(state.get("properties", UNCHANGED))
         self._gate.load_state(state["gate"])
         self._physics.load(state["physics"])
         self._started_s, self._periods = state["started_s"], state["periods"]
@@ -203,6 +223,7 @@ class Physics:
         yield "physics", self._physics.integration().tobytes()
         yield "drives", self.servo.fingerprint()
         yield "noise", self.probe.number.to_bytes(8, "little")
+        yield "properties", encode(self.properties)
 
     def prepare(self, built: BuiltModel, roots: Collection[str]) -> "NextModel":
         """Prepare another model for `swap`. Any thread; it takes a while.
@@ -212,16 +233,22 @@ class Physics:
             roots: top-level bodies whose states are carried over; the others start as in `built`.
         """
         saved = SavedModel.of(built) if self.input_gate is not None else None
+        own = OwnProperties(built.model)
+        changes = self.properties.carried_to(built.model, roots)
+        own.change(built.model, changes)
         transfer = StateTransfer(self.model, built.model, roots)
         transfer.carry_drives(self.model, built.model)
         joints = tuple(built.joints[joint.name] for joint in self.servo.joints)
         data = mujoco.MjData(built.model)
         tuning = retune(built.model, data, joints, self._tuning)
+        if (built.model.opt.gravity != self.model.opt.gravity).any():
+            tuning = tuned_for_gravity(deepcopy(built.model), joints, built.qpos, tuning)
         mujoco.mj_resetData(built.model, data)
         data.qpos[:] = built.qpos
         mujoco.mj_forward(built.model, data)
         gate = ContactGate(built.model, data, self.timing.period_s)
-        return NextModel(built, data, joints, tuning, gate, transfer, tuple(sorted(roots)), saved)
+        kept = tuple(sorted(roots))
+        return NextModel(built, data, joints, tuning, gate, transfer, kept, saved, own, changes)
 
     @run_input_noted_as(_describe_swap)
     def swap(self, following: "NextModel") -> None:
@@ -235,6 +262,7 @@ class Physics:
         following.transfer.carry_drives(self.model, following.built.model)
         self.built, self.model, self.data = following.built, following.built.model, data
         self._tuning, self._gate = following.tuning, following.gate
+        self.properties, self._own_properties = following.properties, following.own_properties
         self._physics = PhysicsState(self.model, data)
         self.faults.rebind(self.model)
         self.servo.rebind(self.model, data, following.joints, following.tuning)
@@ -257,26 +285,53 @@ class Physics:
         data, found = self.data, self.model.joint(joint)
         data.qpos[found.qposadr[0] :][:7] = position
         data.qvel[found.dofadr[0] :][:6] = velocity
-        # Wake every sleeping body, because the moved one may have supported it.
+        self._wake()
+        self._saved_qpos[:] = data.qpos
+        self.probe.expire()
+
+    def tuning_for(self, changes: PropertyChanges) -> ServoTuning:
+        """Return the drives' tuning under the gravity of these changes. Any thread; some ms."""
+        model = deepcopy(self.model)
+        self._own_properties.change(model, changes)
+        return tuned_for_gravity(model, self.servo.joints, self.built.qpos, self._tuning)
+
+    @run_input_noted_as(_describe_properties)
+    def set_properties(self, changes: PropertyChanges, tuning: ServoTuning | None = None) -> None:
+        """Continue with other gravity, masses and friction; between two `advance` calls.
+
+        Args:
+            changes: all that differs from the world's own properties from now on.
+            tuning: what `tuning_for` returns for another gravity; None to find it now.
+        """
+        if changes == self.properties:
+            return
+        self._change_properties(changes, tuning)
+        warm_start = self.data.qacc_warmstart.copy()
+        # The drives read the inertia and gravity of the last step.
+        self._wake()
+        self.data.qacc_warmstart[:] = warm_start
+        self.probe.expire()
+
+    def _change_properties(
+        self, changes: PropertyChanges, tuning: ServoTuning | None = None
+    ) -> None:
+        before, self.properties = self.properties, changes
+        if changes == before:
+            return
+        if changes.gravity != before.gravity:
+            self._tuning = tuning or self.tuning_for(changes)
+            self.servo.retune(self._tuning)
+        self._own_properties.change(self.model, changes)
+        if changes.masses != before.masses:
+            rederive(self.model, self.servo.joints, self._tuning)
+
+    def _wake(self) -> None:
+        """Compute what follows from a change, and wake every sleeping body, which may now move."""
+        data = self.data
         forces = data.xfrc_applied.copy()
         data.xfrc_applied[:] = WAKING_FORCE_N
         mujoco.mj_forward(self.model, data)
         data.xfrc_applied[:] = forces
-        self._saved_qpos[:] = data.qpos
-        self.probe.expire()
-
-    def set_mass(self, body: str, mass_kg: float) -> None:
-        """Give a body another mass, evenly denser or lighter; recordings of runs do not have it.
-
-        Args:
-            body: name of the body.
-            mass_kg: more than 0.
-        """
-        found = self.model.body(body)
-        found.inertia[:] *= mass_kg / found.mass[0]
-        found.mass[0] = mass_kg
-        # What the solver derives from masses.
-        mujoco.mj_setConst(self.model, mujoco.MjData(self.model))
 
     def state(self) -> WorldState:
         """Return a copy of the present state."""
@@ -335,6 +390,8 @@ class NextModel:
 
     Attributes:
         saved: the model before the simulation changed it; None if no run was recorded then.
+        own_properties: gravity, masses and friction of the model before the user's changes.
+        properties: the user's changes, which the model has.
     """
 
     built: BuiltModel
@@ -345,6 +402,8 @@ class NextModel:
     transfer: StateTransfer
     roots: tuple[str, ...]
     saved: SavedModel | None
+    own_properties: OwnProperties
+    properties: PropertyChanges
 
 
 def _log_warning(message: str) -> None:

@@ -246,7 +246,12 @@ def set_friction(geom: mujoco.MjsGeom, friction: float) -> None:
     shape with the higher priority, and for equal priorities the higher coefficient.
     """
     geom.friction = [friction, *geom.friction[1:]]
-    geom.priority = math.ceil(max(DEFAULT_FRICTION - friction, 0.0) * PRIORITIES)
+    geom.priority = friction_priority(friction)
+
+
+def friction_priority(friction: float) -> int:
+    """Return the priority of a shape with this friction; see `set_friction`."""
+    return math.ceil(max(DEFAULT_FRICTION - friction, 0.0) * PRIORITIES)
 
 
 def _shapes_of(link: Link) -> Iterator[tuple[Pose, Geometry]]:

@@ -22,6 +22,7 @@ from arm_gazebo.world.loading import WorldLoader
 if TYPE_CHECKING:
     from arm_gazebo.world.changes import WorldChanges
     from arm_gazebo.world.editor import ModelFeed, ModelHolder, WorldEditor
+    from arm_gazebo.world.entity_properties import PropertyEditor
 
 ResultT = TypeVar("ResultT")
 
@@ -61,7 +62,7 @@ class SimulationRun:
     """One run: the simulation's node publishes it, `arm_sim.Simulation` is its face.
 
     A replay builds one from a file. Time passes in `tick` only. Everything here belongs to the
-    thread of `loop`, except `editor` and `loader`, which belong to one other thread.
+    thread of `loop`, except `editor`, `properties` and `loader`, which belong to one other thread.
 
     Attributes:
         robots: the robots, each with its hardware, sensors, cameras and controller manager.
@@ -148,6 +149,13 @@ class SimulationRun:
 
         source = self.loader.source
         return WorldEditor(self.physics, self.on_loop, self.holders, self.viewers, source)
+
+    @cached_property
+    def properties(self) -> "PropertyEditor":
+        """Changes gravity, masses and friction; it belongs to the thread of `editor`."""
+        from arm_gazebo.world.entity_properties import PropertyEditor
+
+        return PropertyEditor(self.editor, self.physics)
 
     @property
     def robot(self) -> SimulatedRobot:

@@ -12,6 +12,7 @@ from arm_gazebo.errors import GazeboError, Refusal, RequestError, WorldError
 from arm_gazebo.feed.state_feed import PreparedModel
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.physics.physics import Physics
+from arm_gazebo.physics.world_properties import UNCHANGED
 from arm_gazebo.world.changes import (
     NOTHING,
     Matrix,
@@ -100,6 +101,7 @@ class WorldEditor:
     Attributes:
         on_loop: runs functions on the simulation's thread.
         source: reads models to spawn.
+        watchers: called after each change of the world, on the editor's thread.
     """
 
     def __init__(
@@ -115,6 +117,7 @@ class WorldEditor:
         self._holders = tuple(holders)
         self._feeds = tuple(feeds)
         self.source = source
+        self.watchers: list[Callable[[], None]] = []
         self._base = simulation.built
         self._built = simulation.built
         self._changes = NOTHING
@@ -157,6 +160,7 @@ class WorldEditor:
             self._change(changes, then)
         else:
             self.on_loop(then)
+            self.announce()
 
     @property
     def entities(self) -> Entities:
@@ -231,16 +235,27 @@ class WorldEditor:
         """Undo changes to the world.
 
         Args:
-            spawned: whether to undo everything: spawns, deletions and moves.
+            spawned: whether to undo everything: spawns, deletions, moves, changed properties.
             moved: whether to undo the moves of static things.
             then: called on the simulation's thread, before the next tick.
         """
+        if spawned:
+            then = self._with_own_properties(then)
         if spawned and self._changes != NOTHING:
             self._change(NOTHING, then)
         elif moved and self._changes.moved:
             self._change(replace(self._changes, moved={}), then)
         else:
             self.on_loop(then)
+            self.announce()
+
+    def _with_own_properties(self, then: Callable[[], None]) -> Callable[[], None]:
+        def begin() -> None:
+            if self._simulation.properties != UNCHANGED:
+                self._simulation.set_properties(UNCHANGED)
+            then()
+
+        return begin
 
     def replace_world(self, base: BuiltModel) -> None:
         """Continue in another world with the same robots in their present state."""
@@ -248,6 +263,11 @@ class WorldEditor:
         self._swap(base, base.robot_roots)
         self._base, self._changes = base, NOTHING
         self._take_model()
+
+    def announce(self) -> None:
+        """Tell the watchers that the world has changed."""
+        for watcher in self.watchers:
+            watcher()
 
     def in_world(self, pose: Matrix, frame: str) -> Matrix:
         """Return a pose (4, 4) in the world.
@@ -332,3 +352,4 @@ class WorldEditor:
     def _take_model(self) -> None:
         self._entities = Entities(self._built, self._changes, self._notes)
         self._motions = EntityMotions(self._built.model)
+        self.announce()

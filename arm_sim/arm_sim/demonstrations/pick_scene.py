@@ -101,7 +101,7 @@ class PickStage:
     def set_up(self, scene: PickScene) -> None:
         """Bring everything to its place and the arm to its start, right after a reset."""
         simulation = self._env.simulation
-        simulation.parts.physics.set_mass(OBJECT, scene.mass_kg)
+        simulation.set_properties(OBJECT, mass_kg=scene.mass_kg)
         simulation.place(OBJECT, (*scene.place, STANDING_M))
         for name, (x, y, turn) in scene.distractors.items():
             simulation.place(name, (x, y, self._heights[name], 0.0, 0.0, turn))

@@ -122,13 +122,3 @@ def test_robot_that_cannot_move_is_simulated(parts):
     simulation = Physics(built, physics_timing(100))
     simulation.advance()
     assert simulation.time_s == pytest.approx(0.01)
-
-
-def test_a_heavier_body_is_evenly_denser(bench, parts):
-    physics = bench(parts.pendulum(), 100).simulation
-    body = physics.model.body("bob")
-    inertia, beside = body.inertia.copy(), body.subtreemass[0] - body.mass[0]
-    physics.set_mass("bob", 3.0)
-    assert body.mass[0] == 3.0
-    assert body.inertia == pytest.approx(3.0 * inertia)
-    assert body.subtreemass[0] == 3.0 + beside
