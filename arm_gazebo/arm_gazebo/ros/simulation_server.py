@@ -20,6 +20,7 @@ from arm_gazebo.ros.entity_services import EntityServices
 from arm_gazebo.ros.run_services import RunServices, SnapshotServices, StepServices
 from arm_gazebo.ros.topic import set_stamp
 from arm_gazebo.ros.world_markers import WorldMarkerPublisher
+from arm_gazebo.ros.world_parameters import WorldParameters
 from arm_gazebo.run.run import SimulationRun
 from arm_gazebo.state.run_reset import RunReset
 from arm_gazebo.state.snapshots import SnapshotStore
@@ -132,6 +133,7 @@ class SimulationServer:
         reset = RunReset(run.state, editor, resets_clock, statistics.restart)
         control = RunControl(loop, reset.reset, quit_process)
         EntityServices(self._node, editor)
+        WorldParameters(self._node, editor, run.properties)
         RunServices(self._node, editor, control, reset, run.loader, _about(physics.timing))
         snapshots = SnapshotStore(run.state, editor, lambda: run.world_name, statistics.restart)
         SnapshotServices(self._node, snapshots)

@@ -6,13 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import mujoco
+import numpy as np
+from numpy.typing import NDArray
 
 from arm_gazebo.drives.servo_tuning import weak_drives
 from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.physics.physics import Physics
-from arm_gazebo.physics.world_properties import Gravity, bodies_of, shapes_of
+from arm_gazebo.physics.world_properties import Gravity, PropertyChanges, bodies_of, shapes_of
 from arm_gazebo.world.editor import WorldEditor
-from arm_gazebo.world.entity import WorldEntity
 
 MAX_GRAVITY_M_S2 = 100.0
 """In each direction. With more, a falling thing could pass the floor between two checks of
@@ -53,48 +54,56 @@ class PropertyEditor:
         self._physics = physics
 
     @property
+    def changes(self) -> PropertyChanges:
+        """What the user has changed so far."""
+        return self._editor.on_loop(lambda: self._physics.properties)
+
+    @property
     def gravity(self) -> Gravity:
         """The present gravity, m/s2."""
         x, y, z = self._editor.on_loop(lambda: self._physics.model.opt.gravity.tolist())
         return x, y, z
 
     def set_gravity(self, gravity: Sequence[float]) -> None:
-        """Set the gravity, m/s2, shape (3,).
-
-        The drives plan and hold under the new one. A drive that is too weak for it is logged.
-        """
-        changes = self._physics.properties.with_gravity(_checked_gravity(gravity))
-        tuning = self._physics.tuning_for(changes)
-        self._editor.on_loop(lambda: self._physics.set_properties(changes, tuning))
-        self._editor.announce()
-        for name, problem in weak_drives(self._editor.model, self._physics.servo.joints, tuning):
-            logger.warning("joint '%s': %s", name, problem)
+        """Set the gravity, m/s2, shape (3,); see `apply`."""
+        self.apply(with_gravity(self.changes, gravity))
 
     def of_things(self) -> Mapping[str, EntityProperties]:
         """Return the properties of everything but robots, by name."""
-        things = [entity for entity in self._editor.entities if not entity.is_robot]
-        return self._editor.on_loop(
-            lambda: {thing.name: _properties(self._physics, thing) for thing in things}
-        )
+        present = self._present()
+        return {
+            entity.name: present.of(entity.roots[0])
+            for entity in self._editor.entities
+            if not entity.is_robot
+        }
 
     def of(self, name: str) -> EntityProperties:
         """Return the properties of an entity that is not a robot."""
-        thing = self._thing(name)
-        return self._editor.on_loop(lambda: _properties(self._physics, thing))
+        return self._present().of(self._root(name))
 
     def change(
         self, name: str, mass_kg: float | None = None, friction: float | None = None
     ) -> None:
-        """Set properties of a thing; None leaves one as it is.
+        """Set properties of a thing; see `with_thing`."""
+        self.apply(self.with_thing(self.changes, name, mass_kg, friction))
+
+    def with_thing(
+        self,
+        changes: PropertyChanges,
+        name: str,
+        mass_kg: float | None = None,
+        friction: float | None = None,
+    ) -> PropertyChanges:
+        """Return the changes with properties of a thing; None leaves one as it is.
 
         Args:
+            changes: the changes.
             name: name of the entity.
             mass_kg: its mass; it becomes evenly denser or lighter, with all of its parts.
             friction: coefficient of sliding friction of all of its shapes.
         """
-        thing = self._thing(name)
-        [root], present = thing.roots, self.of(name)
-        changes = self._physics.properties
+        root = self._root(name)
+        present = self._present().of(root)
         if mass_kg is not None:
             if present.mass_kg is None:
                 raise RequestError(
@@ -107,45 +116,82 @@ class PropertyEditor:
                 raise RequestError(
                     Refusal.FAILED, f"'{name}' has no shape that touches anything: no friction"
                 )
-            changes = changes.with_friction(
-                root, _checked(f"the friction of '{name}'", friction, 0.0, MAX_FRICTION)
-            )
-        self._editor.on_loop(lambda: self._physics.set_properties(changes))
-        self._editor.announce()
+            value = _checked(f"the friction of '{name}'", friction, 0.0, MAX_FRICTION)
+            changes = changes.with_friction(root, value)
+        return changes
 
-    def _thing(self, name: str) -> WorldEntity:
+    def apply(self, changes: PropertyChanges) -> None:
+        """Continue with these changes and no others, all before the next tick.
+
+        The drives plan and hold under another gravity. A drive that is too weak for it is logged.
+        """
+        physics, tuning = self._physics, None
+        if changes.gravity != self.changes.gravity:
+            tuning = physics.tuning_for(changes)
+        self._editor.on_loop(lambda: physics.set_properties(changes, tuning))
+        self._editor.announce()
+        if tuning is not None:
+            for name, problem in weak_drives(self._editor.model, physics.servo.joints, tuning):
+                logger.warning("joint '%s': %s", name, problem)
+
+    def _root(self, name: str) -> str:
+        """Return the top-level body of an entity that is not a robot."""
         entity = self._editor.entities.find(name)
         if entity.is_robot:
             raise RequestError(
                 Refusal.FAILED,
                 f"'{name}' is a robot: its masses and friction are those of its description",
             )
-        return entity
+        return entity.roots[0]
+
+    def _present(self) -> "_PresentProperties":
+        physics, model = self._physics, self._editor.model
+        # Only copied on the loop's thread, because looking through many things takes long.
+        masses, frictions, changes = self._editor.on_loop(
+            lambda: (model.body_mass.copy(), model.geom_friction[:, 0].copy(), physics.properties)
+        )
+        return _PresentProperties(model, masses, frictions, changes)
 
 
-def _properties(physics: Physics, thing: WorldEntity) -> EntityProperties:
-    """Return the properties of a thing. Loop thread."""
-    return EntityProperties(
-        _mass(physics, thing.roots[0]), _friction(physics.model, thing.roots[0])
-    )
+@dataclass(frozen=True, slots=True)
+class _PresentProperties:
+    """Copies of what changes in a model.
+
+    Attributes:
+        model: the model, for what does not change.
+        masses: of the bodies, kg, shape (nbody,).
+        frictions: of the shapes, shape (ngeom,).
+        changes: what the user has changed.
+    """
+
+    model: mujoco.MjModel
+    masses: NDArray[np.float64]
+    frictions: NDArray[np.float64]
+    changes: PropertyChanges
+
+    def of(self, root: str) -> EntityProperties:
+        """Return the properties of a top-level body with all that is attached to it."""
+        return EntityProperties(self._mass(root), self._friction(root))
+
+    def _mass(self, root: str) -> float | None:
+        bodies = bodies_of(self.model, root)
+        if not self.model.body_dofnum[bodies].any():
+            return None
+        # A sum of masses differs by its rounding from what the user has set.
+        return self.changes.masses.get(root, float(self.masses[bodies].sum()))
+
+    def _friction(self, root: str) -> float | None:
+        model, shapes = self.model, shapes_of(self.model, root)
+        touching = shapes[(model.geom_contype[shapes] | model.geom_conaffinity[shapes]) != 0]
+        return float(self.frictions[touching].min()) if len(touching) else None
 
 
-def _mass(physics: Physics, root: str) -> float | None:
-    model = physics.model
-    bodies = bodies_of(model, root)
-    if not model.body_dofnum[bodies].any():
-        return None
-    # A sum of masses differs by its rounding from what the user has set.
-    return physics.properties.masses.get(root, float(model.body_mass[bodies].sum()))
+def with_gravity(changes: PropertyChanges, gravity: Sequence[float]) -> PropertyChanges:
+    """Return the changes with another gravity, m/s2, shape (3,).
 
-
-def _friction(model: mujoco.MjModel, root: str) -> float | None:
-    shapes = shapes_of(model, root)
-    touching = shapes[(model.geom_contype[shapes] | model.geom_conaffinity[shapes]) != 0]
-    return float(model.geom_friction[touching, 0].min()) if len(touching) else None
-
-
-def _checked_gravity(gravity: Sequence[float]) -> Gravity:
+    Raises:
+        RequestError: it is not a gravity.
+    """
     try:
         x, y, z = map(float, gravity)
     except (TypeError, ValueError):
@@ -156,7 +202,7 @@ def _checked_gravity(gravity: Sequence[float]) -> Gravity:
             f"the gravity is three numbers x y z from -{MAX_GRAVITY_M_S2:g} to "
             f"{MAX_GRAVITY_M_S2:g} m/s2, not {_shown(gravity)}",
         )
-    return x, y, z
+    return changes.with_gravity((x, y, z))
 
 
 def _checked(what: str, value: float, low: float, high: float, unit: str = "") -> float:

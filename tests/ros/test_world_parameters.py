@@ -1,0 +1,131 @@
+"""Gravity, and mass and friction of things, are parameters of the node that serves the world."""
+
+import math
+
+import pytest
+from robots import crate
+
+from arm_gazebo.recording.replay import Replay
+from arm_gazebo.recording.run_file import RunFile
+
+pytestmark = pytest.mark.ros
+
+CRATE = crate(size=0.2)
+MOON = [0.0, 0.0, -1.62]
+OK = 1
+
+
+class World:
+    """The parameters and services of a running simulation."""
+
+    def __init__(self, client) -> None:
+        self._client = client
+
+    def names(self) -> set[str]:
+        from rcl_interfaces.srv import ListParameters
+
+        request = ListParameters.Request(prefixes=["gravity", "entities"])
+        answer = self._client.call(ListParameters, "/simulation/list_parameters", request)
+        return set(answer.result.names)
+
+    def get(self, name: str):
+        from rcl_interfaces.srv import GetParameters
+
+        request = GetParameters.Request(names=[name])
+        [value] = self._client.call(GetParameters, "/simulation/get_parameters", request).values
+        return list(value.double_array_value) or value.double_value
+
+    def set(self, **values) -> str:
+        """Set parameters, all or nothing; return why they were refused."""
+        from rcl_interfaces.srv import SetParametersAtomically
+        from rclpy.parameter import Parameter
+
+        named = [Parameter(name.replace("__", "."), value=v) for name, v in values.items()]
+        request = SetParametersAtomically.Request(parameters=[p.to_parameter_msg() for p in named])
+        answer = self._client.call(
+            SetParametersAtomically, "/simulation/set_parameters_atomically", request
+        )
+        assert answer.result.successful is not bool(answer.result.reason), answer
+        return answer.result.reason
+
+    def spawn(self, name: str) -> None:
+        from simulation_interfaces.msg import Resource
+        from simulation_interfaces.srv import SpawnEntity
+
+        resource = Resource(resource_string=CRATE)
+        request = SpawnEntity.Request(name=name, entity_resource=resource)
+        request.initial_pose.pose.position.z = 0.1
+        request.initial_pose.pose.position.x = 2.0
+        answer = self._client.call(SpawnEntity, "/spawn_entity", request)
+        assert answer.result.result == OK, answer
+
+    def delete(self, name: str) -> None:
+        from simulation_interfaces.srv import DeleteEntity
+
+        request = DeleteEntity.Request(entity=name)
+        answer = self._client.call(DeleteEntity, "/delete_entity", request)
+        assert answer.result.result == OK, answer
+
+    def reset(self, scope: int) -> None:
+        from simulation_interfaces.srv import ResetSimulation
+
+        request = ResetSimulation.Request(scope=scope)
+        answer = self._client.call(ResetSimulation, "/reset_simulation", request)
+        assert answer.result.result == OK, answer
+
+
+@pytest.fixture
+def world(launch, client) -> World:
+    launch("camera:=none", "world:=objects").wait_until_ready()
+    return World(client)
+
+
+def test_parameters_follow_the_world_and_change_it(world):
+    things = {name for name in world.names() if name.endswith(".mass")}
+    assert "entities.red_box.mass" in things
+    assert len(things) == 8
+    own = world.get("entities.red_box.mass")
+    assert world.get("gravity") == pytest.approx([0, 0, -9.81])
+    assert world.set(gravity=MOON, entities__red_box__mass=0.5) == ""
+    assert (world.get("gravity"), world.get("entities.red_box.mass")) == (MOON, 0.5)
+
+    world.spawn("crate")
+    assert {"entities.crate.mass", "entities.crate.friction"} <= world.names()
+    assert world.set(entities__crate__friction=0.1) == ""
+    assert world.get("entities.crate.friction") == 0.1
+    assert (world.get("gravity"), world.get("entities.red_box.mass")) == (MOON, 0.5)
+
+    world.reset(2)  # SCOPE_STATE
+    assert (world.get("gravity"), world.get("entities.red_box.mass")) == (MOON, 0.5)
+    world.delete("crate")
+    assert "entities.crate.mass" not in world.names()
+    world.reset(0)
+    assert world.get("gravity") == pytest.approx([0, 0, -9.81])
+    assert world.get("entities.red_box.mass") == own
+
+
+def test_what_is_wrong_is_refused_with_a_reason_and_changes_nothing(world):
+    refused = world.set(gravity=MOON, entities__red_box__mass=-1.0)
+    assert refused == "the mass of 'red_box' is 1e-06 to 1e+06 kg, not -1 kg"
+    assert world.get("gravity") == pytest.approx([0, 0, -9.81])
+    assert world.set(gravity=[0.0, 0.0, math.nan]) == (
+        "the gravity is three numbers x y z from -100 to 100 m/s2, not [0.0, 0.0, nan]"
+    )
+    assert world.set(entities__red_box__friction=1e9).startswith("the friction of 'red_box' is 0")
+    assert world.get("entities.red_box.friction") == 0.8
+
+
+def test_a_run_over_ros_repeats_with_them(launch, client, tmp_path):
+    path = tmp_path / "moon.run"
+    running = launch("camera:=none", "world:=objects", f"record_run:={path}")
+    running.wait_until_ready()
+    world = World(client)
+    assert world.set(gravity=[0.5, 0.0, -3.0], entities__red_box__mass=0.05) == ""
+    world.spawn("crate")
+    assert world.set(entities__crate__friction=0.02) == ""
+    world.reset(0)
+    assert world.set(gravity=MOON) == ""
+    running.stop()
+    result = Replay(RunFile(path)).run()
+    assert result.difference is None
+    assert result.periods > 0
