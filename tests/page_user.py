@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 TIMEOUT_S = 120.0
@@ -13,6 +14,16 @@ RESIZED = """(width) => new Promise((go) => {
   const look = () => requestAnimationFrame(innerWidth === width ? () => go() : look);
   look();
 })"""
+DRAWN_PLACES = """([name, attribute, size]) => {
+  let numbers = [];
+  window.__viserMutable?.nodeRefFromName[name]?.traverse((node) => {
+    const places = node.geometry?.attributes[attribute];
+    if (places) numbers = Array.from((places.data ?? places).array);
+  });
+  const rows = Array.from({ length: numbers.length / size }, (_, row) => row * size);
+  return rows.map((start) => numbers.slice(start, start + size));
+}"""
+"""A script that returns the numbers of a node of the 3D view, so many in a row."""
 KEEP_WHAT_IS_SAID = """
   window.said = [];
   addEventListener("DOMContentLoaded", () => setTimeout(() => {
@@ -39,6 +50,27 @@ class PageUser:
         usable = self.page.locator(":not([disabled]):not([aria-disabled=true])")
         found = self.page.get_by_role(role, name=name, exact=True)
         usable.and_(found).dispatch_event("click")
+
+    def checkbox(self, label: str) -> Any:
+        """Return a checkbox."""
+        return self.page.get_by_role("checkbox", name=label, exact=True)
+
+    def switch(self, label: str, on: bool) -> None:
+        """Switch a checkbox on or off, whatever an earlier test left there."""
+        box = self.checkbox(label)
+        if box.is_checked() != on:
+            box.dispatch_event("click")
+        self.wait_until(lambda: box.is_checked() == on, f"{label} is {on}")
+
+    def contacts(self) -> list[list[float]]:
+        """Return the points of contacts that are drawn, each x, y and z in m."""
+        # viser's client has points as halves, in an array of integers.
+        halves = self.page.evaluate(DRAWN_PLACES, ["/contacts/points", "position", 3])
+        return np.array(halves, dtype=np.uint16).view(np.float16).tolist()
+
+    def forces(self) -> list[list[float]]:
+        """Return the lines of forces that are drawn, each the six coordinates of its ends in m."""
+        return self.page.evaluate(DRAWN_PLACES, ["/contacts/forces", "instanceStart", 6])
 
     def resize(self, size: dict[str, int]) -> None:
         """Give the window another size, and wait until the page's scripts have heard of it."""

@@ -15,7 +15,10 @@ from arm_gazebo.recording.run_file import RunFile, RunFileWriter, StateBlock
 from arm_sim import Simulation
 
 PERIODS = 30
-TOPICS = ("/clock", "/joint_states", "/robot_description", "/tf", "/world_markers")
+TOPICS = (
+    *("/clock", "/contact_markers", "/joint_states", "/robot_description", "/tf"),
+    "/world_markers",
+)
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +67,22 @@ def test_the_bag_has_each_joint_state_and_its_time_never_goes_back(replayed):
     shapes = next(m for m in messages if m.topic == "/world_markers")
     owners = {marker.ns for marker in deserialize_message(shapes.data, MarkerArray).markers}
     assert "pink_cylinder" in owners
+
+
+def test_the_bag_has_the_forces_where_things_touch(replayed, tmp_path):
+    box = "<mujoco><worldbody><body name='crate'><freejoint/><geom type='box' \
+size='.05 .05 .05' mass='1'/></body></worldbody></mujoco>"
+    arguments = {"camera": "none"}
+    with Simulation("arm", record=tmp_path / "box.run", arguments=arguments) as simulation:
+        simulation.spawn(box, name="crate", pose=(0.5, 0.0, 0.049))
+        simulation.run(0.3)
+    with BagReader(replayed(tmp_path / "box.run")[2]) as bag:
+        found = [
+            deserialize_message(m.data, MarkerArray) for m in bag.messages(["/contact_markers"])
+        ]
+    told = [message.markers[1].text for message in found]
+    assert told[0] == ""
+    assert any(text.startswith("crate::crate on world: ") for text in told), told
 
 
 def test_files_of_the_bag_are_named_when_they_are_complete(replayed, monkeypatch):

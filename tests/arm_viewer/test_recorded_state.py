@@ -5,7 +5,7 @@ from contextlib import closing
 import cv2
 import numpy as np
 import pytest
-from geometry_msgs.msg import TransformStamped, WrenchStamped
+from geometry_msgs.msg import Point, TransformStamped, WrenchStamped
 from mcap.writer import Writer
 from rclpy.serialization import deserialize_message, serialize_message
 from robots import joint, link, robot
@@ -42,6 +42,16 @@ def marker(number, action=Marker.ADD):
     made.header.frame_id = "world"
     made.scale.x = made.scale.y = made.scale.z = made.color.a = 1.0
     return MarkerArray(markers=[made])
+
+
+def contacts(x, text):
+    """Return the contact markers of a force of 1 N at x on the ground; none without a text."""
+    points = Marker(type=Marker.SPHERE_LIST, points=[Point(x=x)])
+    forces = Marker(type=Marker.LINE_LIST, points=[Point(x=x), Point(x=x, z=0.02)], text=text)
+    for each in (points, forces):
+        each.header.frame_id = "world"
+        each.action = Marker.ADD if text else Marker.DELETE
+    return MarkerArray(markers=[points, forces])
 
 
 @pytest.fixture
@@ -128,6 +138,21 @@ def test_things_of_the_world_come_and_go(state_of):
     names = [sorted(at(state, time_s).markers) for time_s in (1, 3, 5, 1)]
     one, two = "/world_markers/world/1", "/world_markers/world/2"
     assert names == [[one], [one, two], [two], [one]]
+
+
+def test_contacts_are_those_of_the_latest_message_before_the_moment(state_of):
+    state = state_of(
+        ("/contact_markers", 1, contacts(1.0, "hand on world: 1 N")),
+        ("/left/contact_markers", 2, contacts(2.0, "left on world: 1 N")),
+        ("/contact_markers", 3, contacts(0.0, "")),
+    )
+    shown = [at(state, time_s).contacts for time_s in (0.5, 1.5, 2.5, 3.5, 1.5)]
+    assert shown[0] is None
+    assert shown[1].frame == "world"
+    assert shown[1].points.tolist() == [[1.0, 0.0, 0.0]]
+    assert shown[1].lines.tolist() == pytest.approx(np.array([[[1.0, 0.0, 0.0], [1.0, 0.0, 0.02]]]))
+    said = [each.strongest for each in shown[1:]]
+    assert said == [("hand on world: 1 N",), ("left on world: 1 N",), (), ("hand on world: 1 N",)]
 
 
 def test_pictures_are_read_only_where_they_are_shown(state_of):

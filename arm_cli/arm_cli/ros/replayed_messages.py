@@ -1,4 +1,4 @@
-"""What a replayed run says to ROS: clock, joint states, transforms, descriptions, shapes."""
+"""What a replayed run says to ROS: clock, joint states, transforms, shapes, contacts and more."""
 
 from collections.abc import Mapping
 
@@ -12,13 +12,16 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 from arm_gazebo.recording.replay import Replay
+from arm_gazebo.ros.contact_markers import TOPIC as CONTACT_TOPIC
+from arm_gazebo.ros.contact_markers import contact_markers
 from arm_gazebo.ros.world_markers import MOVED, TOPIC, marker_of
 from arm_gazebo.run.robot import SimulatedRobot
 from arm_gazebo.world.changes import WorldChanges
+from arm_gazebo.world.contacts import contacts_of
 from arm_gazebo.world.entity import WORLD_FRAME, Entities
 from arm_gazebo.world.shapes import WorldShapes
 
-CLOCK, TF, MARKERS = "/clock", "/tf", f"/{TOPIC}"
+CLOCK, TF, MARKERS, CONTACTS = "/clock", "/tf", f"/{TOPIC}", f"/{CONTACT_TOPIC}"
 
 
 class ReplayedMessages:
@@ -34,6 +37,7 @@ class ReplayedMessages:
     def __init__(self, replay: Replay) -> None:
         self._replay = replay
         self._model: object = None
+        self._contacts: MarkerArray | None = None
         self._joints = {
             f"{_namespace(robot)}/joint_states": [
                 name.removesuffix("/position")
@@ -92,13 +96,7 @@ class ReplayedMessages:
 
         It is the same message, whose poses change.
         """
-        built = self._replay.simulation.built
-        if built.model is not self._model:
-            self._model = built.model
-            self._shapes = WorldShapes(built.model, Entities(built, WorldChanges(), {}))
-            shown = [marker_of(shape) for shape in self._shapes.shapes]
-            self._markers = MarkerArray(markers=shown)
-            self._poses = np.full((len(shown), 7), np.nan)
+        self._follow_model()
         data = self._replay.simulation.observe()
         poses = self._shapes.poses(data.geom_xpos, data.geom_xmat)
         if np.abs(poses - self._poses).max(initial=0.0) < MOVED:
@@ -109,6 +107,29 @@ class ReplayedMessages:
             turn = Quaternion(x=qx, y=qy, z=qz, w=qw)
             marker.pose = Pose(position=Point(x=x, y=y, z=z), orientation=turn)
         return self._markers
+
+    def contacts(self) -> MarkerArray | None:
+        """Return the contacts and their forces if they have changed since the last call."""
+        self._follow_model()
+        simulation = self._replay.simulation
+        each = contacts_of(None, simulation.model, simulation.observe(), self._entities)
+        found = contact_markers(each)
+        if found == self._contacts:
+            return None
+        self._contacts = found
+        return found
+
+    def _follow_model(self) -> None:
+        """Take notice of another model, which may have other shapes and entities."""
+        built = self._replay.simulation.built
+        if built.model is self._model:
+            return
+        self._model = built.model
+        self._entities = Entities(built, WorldChanges(), {})
+        self._shapes = WorldShapes(built.model, self._entities)
+        shown = [marker_of(shape) for shape in self._shapes.shapes]
+        self._markers = MarkerArray(markers=shown)
+        self._poses = np.full((len(shown), 7), np.nan)
 
     def _stamp(self) -> Time:
         nanoseconds = round(self._replay.simulation.time_s * 1e9)

@@ -15,7 +15,7 @@ from arm_cli.bag_format.offered_qos import OfferedQos
 from arm_cli.bag_format.topic import BagMessage, BagTopic, find_definition
 from arm_cli.bag_format.writer import BagSettings, BagWriter
 from arm_cli.interface_types import InterfaceIndex
-from arm_cli.ros.replayed_messages import CLOCK, MARKERS, TF, ReplayedMessages
+from arm_cli.ros.replayed_messages import CLOCK, CONTACTS, MARKERS, TF, ReplayedMessages
 from arm_gazebo.recording.replay import Replay
 from arm_node.workarounds.message_template import serialized
 
@@ -36,7 +36,7 @@ class RunBag:
     """Writes a bag whose time is that of the recording: 0 at its beginning, and never back.
 
     Joint states are written after each control period, so that no peak is lost; the rest as often
-    as it is shown, and shapes only when they have moved.
+    as it is shown, and shapes and contacts only when they have changed.
 
     Args:
         folder: of the bag; it must not exist.
@@ -69,9 +69,8 @@ class RunBag:
             self._write({CLOCK: self._messages.clock(), TF: self._messages.transforms()})
         if time_s >= self._marked_s + MARKER_PERIOD_S:
             self._marked_s = time_s
-            shapes = self._messages.markers()
-            if shapes is not None:
-                self._write({MARKERS: shapes})
+            found = {MARKERS: self._messages.markers(), CONTACTS: self._messages.contacts()}
+            self._write({topic: m for topic, m in found.items() if m is not None})
 
     def split(self) -> str:
         """Finish the file of what was shown so far, and begin another; return its name.

@@ -1,4 +1,4 @@
-"""Publishes a replayed run: clock, joint states, transforms, descriptions and shapes."""
+"""Publishes a replayed run: clock, joint states, transforms, shapes, contacts and more."""
 
 import time
 
@@ -9,13 +9,13 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
-from arm_cli.ros.replayed_messages import CLOCK, MARKERS, TF, ReplayedMessages
+from arm_cli.ros.replayed_messages import CLOCK, CONTACTS, MARKERS, TF, ReplayedMessages
 from arm_cli.ros.session import CommandSession
 from arm_gazebo.recording.replay import Replay
 
 PUBLISH_PERIOD_S = 0.02
 MARKER_EVERY = 5
-"""Shapes are looked at with every fifth state."""
+"""Shapes and contacts are looked at with every fifth state."""
 HOLD_PERIOD_S = 0.1
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -38,6 +38,7 @@ class RunPlayer:
         self._clock = node.create_publisher(Clock, CLOCK, 10)
         self._transforms = node.create_publisher(TFMessage, TF, 100)
         self._markers = node.create_publisher(MarkerArray, MARKERS, LATCHED)
+        self._contacts = node.create_publisher(MarkerArray, CONTACTS, LATCHED)
         for topic, text in self._messages.descriptions().items():
             node.create_publisher(String, topic, LATCHED).publish(text)
         self._states = {
@@ -83,6 +84,8 @@ class RunPlayer:
         self._transforms.publish(self._messages.transforms())
         self._published += 1
         if self._published % MARKER_EVERY == 1:
-            shapes = self._messages.markers()
+            shapes, contacts = self._messages.markers(), self._messages.contacts()
             if shapes is not None:
                 self._markers.publish(shapes)
+            if contacts is not None:
+                self._contacts.publish(contacts)

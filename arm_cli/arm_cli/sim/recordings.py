@@ -93,7 +93,7 @@ def _say_recorded(path: Path) -> None:
         "--bag",
         metavar="DIR",
         type=Path,
-        help="write clock, joint states, transforms and shapes as a bag",
+        help="write clock, joint states, transforms, shapes and contacts as a bag",
     ),
     Flag(
         "--json",

@@ -28,7 +28,9 @@ SWITCHES = {
 
 MAX_LISTED = 8
 NO_CONTACT = "Nothing touches."
-UNKNOWN_CONTACTS = "Nobody publishes contact_markers, or this is a recording."
+UNKNOWN_CONTACTS = (
+    "Contacts are not known: nobody publishes contact_markers, or the recording has none."
+)
 STARTUP_WAIT_S = 1.5
 """How long the page waits for a robot's joint states and transforms before it reports a problem."""
 

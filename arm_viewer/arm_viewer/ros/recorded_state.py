@@ -22,6 +22,8 @@ from arm_viewer.recordings.curve import NumberPlace, read_samples
 from arm_viewer.recordings.open_recording import Wanted
 from arm_viewer.recordings.recorded_bag import CDR, RecordedBag, Sample
 from arm_viewer.ros.camera_observer import camera_view, picture_of
+from arm_viewer.ros.contact_observer import WORD as CONTACTS
+from arm_viewer.ros.contact_observer import contact_forces
 from arm_viewer.ros.graph_observer import message_class_of
 from arm_viewer.ros.joint_observer import WORD as JOINT_STATES
 from arm_viewer.ros.joint_observer import joint_readings
@@ -32,6 +34,7 @@ from arm_viewer.ros.observer import type_name
 from arm_viewer.ros.robot_observer import DESCRIPTION_WORD, described, transforms_in
 from arm_viewer.snapshot import (
     CameraView,
+    ContactForces,
     Description,
     JointReading,
     JointStates,
@@ -134,6 +137,7 @@ class RecordedState:
             pictures=self._pictures(time_ns, wanted.pictures),
             cameras=self._cameras(time_ns),
             markers=self._markers(time_ns),
+            contacts=self._contacts(time_ns),
             numbers=self._listed,
             curves=self._curves_at(time_ns, wanted.curves),
             curves_s=1e-9 * time_ns,
@@ -219,6 +223,18 @@ class RecordedState:
                 for marker in message.markers:
                     apply_marker(markers, topic, marker)
         return MappingProxyType(markers)
+
+    def _contacts(self, time_ns: int) -> ContactForces | None:
+        """Return the latest contacts of all simulations, as the live page shows them."""
+        samples = {
+            topic: sample
+            for topic in self._named(MarkerArray, f"/{CONTACTS}")
+            if (sample := self._recording.last(topic, time_ns)) is not None
+        }
+        if not samples:
+            return None
+        newest = max(samples, key=lambda topic: samples[topic].time_ns)
+        return self._last(newest, MarkerArray, time_ns, contact_forces)
 
     def _time(self, time_ns: int, now_s: float, speed: float) -> SimulationTime | None:
         clock = self._last("/clock", Clock, time_ns) if self._named(Clock, "/clock") else None

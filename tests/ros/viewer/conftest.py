@@ -72,17 +72,6 @@ class Visitor(PageUser):
         """Select a tab."""
         self.page.get_by_role("tab", name=name, exact=True).click()
 
-    def checkbox(self, label: str):
-        """Return a checkbox."""
-        return self.page.get_by_role("checkbox", name=label, exact=True)
-
-    def switch(self, label: str, on: bool) -> None:
-        """Switch a checkbox on or off, whatever an earlier test left there."""
-        box = self.checkbox(label)
-        if box.is_checked() != on:
-            box.dispatch_event("click")
-        self.wait_until(lambda: box.is_checked() == on, f"{label} is {on}")
-
     def button(self, label: str):
         """Return a button."""
         return self.page.get_by_role("button", name=label, exact=True)

@@ -15,6 +15,8 @@ from std_msgs.msg import String
 
 from arm_cli.bag_format.topic import BagMessage, BagTopic, TypeDefinition
 from arm_cli.bag_format.writer import BagSettings, BagWriter
+from arm_gazebo.ros.contact_markers import contact_markers
+from arm_gazebo.world.contacts import Contact
 from arm_sim import Simulation
 
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
@@ -33,6 +35,8 @@ KEEP_VERDICTS = """
 """
 """A script before those of the page: it keeps what was said of a run, and whether it was shown."""
 S = 1_000_000_000
+HERE, UP = np.array([0.5, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+CONTACT = Contact("hand", "world", HERE, UP, 0.0, 5.0 * UP)
 URDF = robot(link("base"), link("hand"), joint("j0", "base", "hand"))
 
 
@@ -40,7 +44,8 @@ URDF = robot(link("base"), link("hand"), joint("j0", "base", "hand"))
 def folder(tmp_path_factory):
     """Return a folder with a bag of 20 s, in which joint j0 moves by 0.05 rad/s, and with runs.
 
-    The bag has a depth image of 2x2 pixels: 0.5 m and 1 m above 1.5 m and 2 m.
+    The bag has a depth image of 2x2 pixels: 0.5 m and 1 m above 1.5 m and 2 m. Its contacts are one
+    until 10 s, and none from then on.
     """
     folder = tmp_path_factory.mktemp("recordings")
     writer = BagWriter(folder / "bag", BagSettings())
@@ -48,6 +53,7 @@ def folder(tmp_path_factory):
         "/robot_description": "std_msgs/msg/String",
         "/joint_states": "sensor_msgs/msg/JointState",
         "/depth": "sensor_msgs/msg/Image",
+        "/contact_markers": "visualization_msgs/msg/MarkerArray",
     }
     for topic, kind in kinds.items():
         writer.add_topic(BagTopic(topic, kind), TypeDefinition(kind, b""))
@@ -55,6 +61,9 @@ def folder(tmp_path_factory):
     depth = np.array([[0.5, 1.0], [1.5, 2.0]], dtype=np.float32)
     image = Image(width=2, height=2, encoding="32FC1", step=8, data=depth.tobytes())
     writer.write(BagMessage("/depth", 0, 0, serialize_message(image)))
+    for time_ns, contacts in ((0, [CONTACT]), (10 * S, [])):
+        data = serialize_message(contact_markers(contacts))
+        writer.write(BagMessage("/contact_markers", time_ns, time_ns, data))
     for tick in range(round(50 * LENGTH_S) + 1):
         state = JointState(name=["j0"], position=[0.001 * tick])
         writer.write(BagMessage("/joint_states", tick * S // 50, 0, serialize_message(state)))
@@ -71,14 +80,20 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def timeline(page_at, folder):
-    """Return the page of `arm view`, with the bag open."""
+def new_timeline(page_at, folder):
+    """Return a function that opens the page of `arm view`, with the bag, in a window of a size."""
     words = ("view", folder / "bag", "--recordings", folder, "--port", "0")
     viewing = Program([sys.executable, "-m", "arm_cli", *words])
     line = viewing.wait_for_line("the page is at http://")
-    script = KEEP_WHAT_IS_SAID + KEEP_VERDICTS
-    yield Timeline(page_at(re.search(r"http://\S+", line)[0], script))
+    url, script = re.search(r"http://\S+", line)[0], KEEP_WHAT_IS_SAID + KEEP_VERDICTS
+    yield lambda size: Timeline(page_at(url, script, size))
     viewing.close()
+
+
+@pytest.fixture(scope="module")
+def timeline(new_timeline):
+    """Return a page as it is on a desk."""
+    return new_timeline(DESK)
 
 
 class Timeline(PageUser):
@@ -168,6 +183,24 @@ def test_a_picture_takes_the_place_of_the_3d_view_and_tells_its_values(timeline)
         )
     timeline.click("Back to the 3D view")
     canvas.wait_for(state="hidden")
+
+
+@pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
+def test_recorded_contacts_are_drawn_like_live_ones(new_timeline, size):
+    timeline = new_timeline(size)
+    timeline.drag(0.25)
+    timeline.switch("Contacts", True)
+    timeline.page.get_by_text("hand on world: 5 N").wait_for(state="attached")
+    timeline.wait_until(lambda: timeline.contacts() == [[0.5, 0, 0]], "the point is drawn")
+    assert timeline.forces() == [pytest.approx([0.5, 0, 0, 0.5, 0, 0.1])], "2 cm a newton"
+    timeline.drag(0.75)
+    timeline.page.get_by_text("Nothing touches").wait_for(state="attached")
+    timeline.wait_until(lambda: timeline.contacts() == [], "the point has gone")
+    timeline.drag(0.25)
+    timeline.wait_until(lambda: timeline.contacts() == [[0.5, 0, 0]], "it is back")
+    timeline.switch("Contacts", False)
+    timeline.wait_until(lambda: timeline.contacts() == [], "it is not shown any more")
+    assert "nothing here moves a robot" in timeline.text("arm-banner"), "nothing was refused"
 
 
 def test_space_plays_and_the_end_is_the_end(timeline):
