@@ -25,6 +25,7 @@ from arm_gazebo.batch.copies import (
 from arm_gazebo.drives.servo_batch import ServoBatch
 from arm_gazebo.physics.contact_gate import CONTACT, FALLING_M_S, floor_clearance
 from arm_gazebo.physics.physics import Physics
+from arm_gazebo.physics.stepped_shapes import SteppedShapes
 from arm_gazebo.robot.actuation import drive_slices
 from arm_node.index_slice import as_slice
 
@@ -102,6 +103,7 @@ class PhysicsBatch:
         servo, self._bounds = simulation.servo, bounds
         model = deepcopy(simulation.model)
         model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        SteppedShapes(model).hide()
         self.copies, self._period_s = copies, simulation.timing.period_s
         self._steps = simulation.timing.steps
         # MuJoCo stores in MjData which bodies sleep, so each copy needs its own.

@@ -27,6 +27,7 @@ from arm_gazebo.physics.contact_gate import ContactGate
 from arm_gazebo.physics.faults import Distortion, PhysicsFaults
 from arm_gazebo.physics.state_probe import StateProbe, WorldState
 from arm_gazebo.physics.state_transfer import PhysicsState, StateTransfer
+from arm_gazebo.physics.stepped_shapes import SteppedShapes
 from arm_gazebo.physics.world_properties import UNCHANGED, OwnProperties, PropertyChanges
 from arm_gazebo.physics_timing import DIVIDES_WITHIN, PhysicsTiming
 from arm_gazebo.robot.actuation import RobotJoint
@@ -112,6 +113,7 @@ class Physics:
         self.faults = PhysicsFaults(built.model, lambda name: self.built.joints[name].dof_address)
         self._restart(built.qpos, 0.0)
         self._gate = ContactGate(self.model, self.data, timing.period_s)
+        self._shapes = SteppedShapes(self.model)
         self._physics = PhysicsState(self.model, self.data)
         self._failures: list[str] = []
         self._ticks_to_save = 0
@@ -133,7 +135,11 @@ class Physics:
         before_s = data.time
         self.servo.update()
         self._gate.update()
-        mujoco.mj_step(self.model, data, self.timing.steps)
+        self._shapes.hide()
+        try:
+            mujoco.mj_step(self.model, data, self.timing.steps)
+        finally:
+            self._shapes.show()
         if data.time <= before_s or (not before_s and _has_reset_itself(data)):
             # MuJoCo resets itself when a number is no longer finite.
             self._recover(before_s)
@@ -247,8 +253,11 @@ class Physics:
         data.qpos[:] = built.qpos
         mujoco.mj_forward(built.model, data)
         gate = ContactGate(built.model, data, self.timing.period_s)
+        shapes = SteppedShapes(built.model)
         kept = tuple(sorted(roots))
-        return NextModel(built, data, joints, tuning, gate, transfer, kept, saved, own, changes)
+        return NextModel(
+            built, data, joints, tuning, gate, shapes, transfer, kept, saved, own, changes
+        )
 
     @run_input_noted_as(_describe_swap)
     def swap(self, following: "NextModel") -> None:
@@ -263,6 +272,7 @@ class Physics:
         self.built, self.model, self.data = following.built, following.built.model, data
         self._tuning, self._gate = following.tuning, following.gate
         self.properties, self._own_properties = following.properties, following.own_properties
+        self._shapes = following.shapes
         self._physics = PhysicsState(self.model, data)
         self.faults.rebind(self.model)
         self.servo.rebind(self.model, data, following.joints, following.tuning)
@@ -399,6 +409,7 @@ class NextModel:
     joints: tuple[RobotJoint, ...]
     tuning: ServoTuning
     gate: ContactGate
+    shapes: SteppedShapes
     transfer: StateTransfer
     roots: tuple[str, ...]
     saved: SavedModel | None

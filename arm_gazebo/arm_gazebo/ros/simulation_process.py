@@ -93,10 +93,11 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
             ending.callback(nodes_of_robot.shutdown)
             nodes_of_robot.serve(robot, loop, executor)
         _serve_all(robots, run, node, loop, process.executor)
+        for feed in viewers:
+            # Before the first step, because steps change the model while they run.
+            feed.start(run.physics.model)
         if not settings.paused:
             loop.resume()
-        for feed in viewers:
-            feed.start(run.physics.model)
         _supervise(node, clock, loop.pacer, run, [*viewers, recording])
         statistics = SimulationStatistics(
             run.physics, run.tick.costs, loop.pacer, [feed.counts for feed in streams]
