@@ -265,9 +265,9 @@ def service(options: argparse.Namespace) -> None:
 SERVER = "-s"
 HELP = """usage: arm gz sim [-r] [-s] [-v LEVEL] [FILE]
 
-Show a world: empty, shapes, objects, pick_and_place_demo, pick_demonstrations, house, or an SDF
-file. The options are Gazebo's. The page opens in the browser unless -s is given. The world runs at
-once, even without -r.
+Show a world: empty, shapes, objects, pick, pick_and_place_demo, pick_demonstrations, house, or an
+SDF file. The options are Gazebo's. The page opens in the browser unless -s is given. The world runs
+at once, even without -r.
 """
 
 

@@ -13,6 +13,9 @@ from arm_control.state.attributes import Stateful
 
 logger = logging.getLogger("controller_manager")
 
+# Looked up once: in Python 3.11 a member of an enum takes as long as a call.
+_OK, _DEACTIVATE = HardwareReturn.OK, HardwareReturn.DEACTIVATE
+
 
 class HardwareComponent:
     """A driver and its life-cycle state. Loop thread only.
@@ -115,7 +118,7 @@ class HardwareComponent:
         cadence = self._reading
         due_s = cadence.due_period_s(time_s, period_s) if cadence.skips else period_s
         if due_s is None:
-            return HardwareReturn.OK
+            return _OK
         return self._exchange(self.hardware.read, self.reads, time_s, due_s)
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:
@@ -123,7 +126,7 @@ class HardwareComponent:
         cadence = self._writing
         due_s = cadence.due_period_s(time_s, period_s) if cadence.skips else period_s
         if due_s is None:
-            return HardwareReturn.OK
+            return _OK
         return self._exchange(self.hardware.write, self.writes, time_s, due_s)
 
     def _exchange(
@@ -145,9 +148,9 @@ class HardwareComponent:
             return HardwareReturn.ERROR
         runs.add_period(period_s)
         runs.add_duration(self._now_s() - began_s)
-        if outcome is HardwareReturn.DEACTIVATE and self.state is not LifecycleState.ACTIVE:
+        if outcome is _DEACTIVATE and self.state is not LifecycleState.ACTIVE:
             # It is already inactive: a driver may repeat its request in every read.
-            return HardwareReturn.OK
+            return _OK
         return outcome
 
     def _step_towards(self, target: LifecycleState) -> Transition:

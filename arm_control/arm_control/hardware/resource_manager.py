@@ -16,6 +16,8 @@ from arm_control.status import HardwareComponentStatus, InterfaceStatus
 HardwareFault = tuple[HardwareComponent, HardwareReturn]
 """A component whose read or write was not OK."""
 
+# Looked up once: in Python 3.11 a member of an enum takes as long as a call.
+_OK = HardwareReturn.OK
 STAYS = ("position",)
 """Command interfaces for which the command that stops a joint is its own state, not 0."""
 STOPS = ("velocity", "acceleration", "effort")
@@ -179,7 +181,7 @@ class ResourceManager:
         faults: list[HardwareFault] = []
         for component in self._reading:
             outcome = component.read(time_s, period_s)
-            if outcome is not HardwareReturn.OK:
+            if outcome is not _OK:
                 faults.append((component, outcome))
         return faults
 
@@ -188,7 +190,7 @@ class ResourceManager:
         faults: list[HardwareFault] = []
         for component in self._writing:
             outcome = component.write(time_s, period_s)
-            if outcome is not HardwareReturn.OK:
+            if outcome is not _OK:
                 faults.append((component, outcome))
         return faults
 

@@ -16,6 +16,9 @@ from arm_control.status import ChainConnection, ControllerStatus
 
 logger = logging.getLogger("controller_manager")
 
+# Looked up once: in Python 3.11 a member of an enum takes as long as a call.
+_OK = ReturnType.OK
+
 
 class ManagedController:
     """A controller and what the manager knows about it. Loop thread only.
@@ -175,7 +178,7 @@ class ManagedController:
             return False
         self.runs.add_period(due_s)
         self.runs.add_duration(self._now_s() - began_s)
-        return outcome is ReturnType.OK
+        return outcome is _OK
 
     def status(self, connections: tuple[ChainConnection, ...] = ()) -> ControllerStatus:
         """Return a snapshot for the list services.

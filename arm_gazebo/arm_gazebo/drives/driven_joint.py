@@ -26,6 +26,8 @@ class DriveMode(Enum):
 
 SERVOED = frozenset({DriveMode.HOLD, DriveMode.POSITION, DriveMode.VELOCITY})
 """Modes in which the joint follows a set-point."""
+# Looked up once: in Python 3.11 a member of an enum takes as long as a call.
+_POSITION, _VELOCITY, _EFFORT = DriveMode.POSITION, DriveMode.VELOCITY, DriveMode.EFFORT
 
 
 LANDING_SPEED = 1e-5
@@ -244,12 +246,12 @@ class DrivenJoint:
         HOLD and FREE ignore commands.
         """
         differs = False
-        if self.mode is DriveMode.POSITION:
+        if self.mode is _POSITION:
             differs = self._stream.command(value, tick)
-        elif self.mode is DriveMode.VELOCITY:
+        elif self.mode is _VELOCITY:
             differs = value != self._velocity
             self._velocity = value
-        elif self.mode is DriveMode.EFFORT:
+        elif self.mode is _EFFORT:
             self.effort = value
         return differs and self.setpoint.velocity == 0.0
 
@@ -259,7 +261,7 @@ class DrivenJoint:
         -1 at rest, and for a target that moves.
         """
         position, velocity = self.setpoint.position, self.setpoint.velocity
-        if self.mode is DriveMode.VELOCITY:
+        if self.mode is _VELOCITY:
             if not velocity and not self._velocity:
                 return -1.0
             target = self.joint.upper if self._velocity > 0.0 else self.joint.lower
@@ -296,7 +298,7 @@ class DrivenJoint:
                 setpoint.velocity = fastest
         start = self.start_position = setpoint.position
         self.start_velocity = setpoint.velocity
-        if self.mode is DriveMode.VELOCITY:
+        if self.mode is _VELOCITY:
             # A velocity command moves towards the joint's limit at that speed.
             speed = abs(self._velocity)
             target = self.joint.upper if self._velocity > 0.0 else self.joint.lower
@@ -308,7 +310,7 @@ class DrivenJoint:
             target, target_velocity, speed = stream.target, stream.velocity, self._speed
             if target == start and not target_velocity and not setpoint.velocity:
                 return False
-            if self._rate_per_s and self.mode is DriveMode.POSITION:
+            if self._rate_per_s and self.mode is _POSITION:
                 target_velocity, speed = 0.0, self._proportional_speed(target)
         # As `budget`: a call for every joint in every tick would cost more than the rest.
         left = self._strength - (gravity if gravity > 0.0 else -gravity)

@@ -151,7 +151,9 @@ class Servo:
         self._motion = np.zeros(model.nv)
         self._load = np.zeros(model.nv)
         activations, controls = drive_slices(model, joints)
-        self._act, self._ctrl = data.act[activations], data.ctrl[controls]
+        # Numbers are packed into the arrays: assigning a list takes three times as long.
+        self._pack = struct.Struct(f"{len(joints)}d").pack_into
+        self._act, self._ctrl = data.act[activations].data, data.ctrl[controls].data
         dofs = np.array([joint.dof_address for joint in joints], dtype=np.intp)
         addresses = np.array([joint.qpos_address for joint in joints], dtype=np.intp)
         self.law = BrakingLaw(model, tuning, dofs)
@@ -321,7 +323,7 @@ class Servo:
         gains = self._gains
         for index, driven in self._servoed:
             gains[index] = driven.setpoint.velocity - driven.start_velocity
-        self._accelerations[:] = gains
+        self._pack(self._accelerations.data, 0, *gains)
         # `_spread` is divided by the period already, which turns a speed gain into acceleration.
         self._spread.dot(self._accelerations, self._motion)
         mujoco.mj_mulM(self._model, self._data, self._load, self._motion)
@@ -367,8 +369,8 @@ class Servo:
             start = driven.start_position
             activations[index] = start + lead_s * start_speed + effort * self._compliance[index]
             rates[index] = (setpoint.position - start + lead_s * (speed - start_speed)) * per_period
-        self._act[:] = activations
-        self._ctrl[:] = rates
+        self._pack(self._act, 0, *activations)
+        self._pack(self._ctrl, 0, *rates)
 
     def _set_gains(self, index: int, mode: DriveMode) -> None:
         tuning, model = self._tuning, self._model

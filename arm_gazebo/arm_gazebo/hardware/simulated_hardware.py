@@ -24,6 +24,8 @@ MODES = {mode.value: mode for mode in (DriveMode.POSITION, DriveMode.VELOCITY, D
 MAX_EFFORT = "max_effort"
 """Command interface that limits the effort of a joint's drive; 0 or less lifts the limit."""
 STATES = ("position", "velocity", "effort")
+# Looked up once: in Python 3.11 a member of an enum takes as long as a call.
+_OK = HardwareReturn.OK
 UNITS = {
     DriveMode.POSITION: ("rad", "m"),
     DriveMode.VELOCITY: ("rad/s", "m/s"),
@@ -217,15 +219,15 @@ class SimulatedHardware:
         simulation = self._simulation
         simulation.faults.apply(self._joint_channels, states, simulation.probe.number)
         self._sensors.fill(self._sensor_values)
-        return HardwareReturn.OK
+        return _OK
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:
         """Take changed commands: NaN is ignored, and values beyond the limits are clamped."""
         if self._is_stopped:
-            return HardwareReturn.OK
+            return _OK
         commands = self._commands.tobytes()
         if commands == self._taken:
-            return HardwareReturn.OK
+            return _OK
         self._taken = commands
         values = self._commands.tolist()
         if self._gpios.commands:
@@ -241,7 +243,7 @@ class SimulatedHardware:
             elif self._beyond:
                 self._beyond.discard(interface.name)
             self._servo.command(interface.drive, value)
-        return HardwareReturn.OK
+        return _OK
 
     def reset(self) -> None:
         """Set each claimed command to the value at which its joint stays put, and read the states.

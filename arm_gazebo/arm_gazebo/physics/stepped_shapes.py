@@ -14,8 +14,8 @@ WRAPPED = (mujoco.mjtWrap.mjWRAP_SPHERE, mujoco.mjtWrap.mjWRAP_CYLINDER)
 class SteppedShapes:
     """Hides the shapes of a model that no step needs. Loop thread only.
 
-    Contacts stay the same, bit for bit: MuJoCo looks for what is near in smaller boxes. While shapes
-    are hidden, steps leave their poses as they are.
+    Contacts stay the same, bit for bit; MuJoCo looks for what is near in smaller boxes. While it
+    steps, hidden shapes keep their poses.
 
     Args:
         model: the model. Its lists of the bodies' shapes are changed.

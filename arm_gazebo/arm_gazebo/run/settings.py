@@ -155,8 +155,8 @@ class SimulationSettings(PhysicsSettings):
     robots: tuple[RobotSettings, ...]
     world: str = setting(
         "empty",
-        "empty, objects, shapes, pick_and_place_demo, pick_demonstrations, house, or a MuJoCo XML "
-        "or SDF file",
+        "empty, objects, shapes, pick, pick_and_place_demo, pick_demonstrations, house, or a "
+        "MuJoCo XML or SDF file",
         read_text,
     )
     real_time_factor: float = setting(

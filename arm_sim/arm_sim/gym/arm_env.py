@@ -91,6 +91,7 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         options = RobotOptions(description, joints, decision_s, control_rate_hz, simulation or {})
         self._robot = CommandedRobot(options, interface)
         self.simulation: Simulation = self._robot.simulation
+        self._physics = self.simulation.parts.physics
         self.lower, self.upper = self._robot.lower, self._robot.upper
         self._commands = Commands(actions, self._robot.joints, decision_s)
         self._cameras = tuple(cameras)
@@ -129,8 +130,7 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
 
     def point(self, link: str) -> Array:
         """Return the origin of a link, or of a thing in the world, in m, shape (3,)."""
-        state = self.simulation.parts.physics.poses()
-        return state.xpos[self._robot.body(link)].copy()
+        return self._physics.poses().xpos[self._robot.body(link)].copy()
 
     def point_at(self, link: str, positions: Array) -> Array:
         """Return where a link would be, shape (3,), with the joints at positions, shape (n,)."""
@@ -164,10 +164,10 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
         """
         self._last = self._commands.of(action, self._last)
         self._robot.command(self._last.tolist())
-        parts = self.simulation.parts
+        tick = self.simulation.parts.tick
         for _ in range(self._robot.periods):
-            parts.tick()
-        failures = parts.physics.take_failures()
+            tick()
+        failures = self._physics.take_failures()
         task = self.task
         succeeded = bool(task.succeeded(self))
         info = {"is_success": succeeded, **self._shown()}
@@ -207,8 +207,7 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
     def _begin(self, random: np.random.Generator) -> None:
         """Return to the start and draw a goal."""
         self._robot.restart()
-        physics = self.simulation.parts.physics
-        self._qpos, self._qvel = physics.data.qpos, physics.data.qvel
+        self._qpos, self._qvel = self._physics.data.qpos, self._physics.data.qvel
         self._addresses = np.array([joint.qpos_address for joint in self._robot.joints])
         self._dofs = np.array([joint.dof_address for joint in self._robot.joints])
         self._last = self._commands.home.copy()

@@ -84,7 +84,7 @@ class CommandedRobot:
             controllers=_controllers(names, interface, options.control_rate_hz),
             **options.simulation,
         )
-        physics = self.simulation.parts.physics
+        self._physics = physics = self.simulation.parts.physics
         self.joints: tuple[RobotJoint, ...] = tuple(physics.built.joints[name] for name in names)
         driven = [joint.name for joint in physics.servo.joints]
         self.drives = [driven.index(name) for name in names]
@@ -98,7 +98,7 @@ class CommandedRobot:
         """Return robot and world to their start, with the clock at 0 and without a command."""
         controllers = self.simulation.controllers
         controllers.switch(deactivate=[CONTROLLER])
-        self.simulation.parts.physics.reset()
+        self._physics.reset()
         controllers.switch(activate=[CONTROLLER])
 
     def command(self, values: Sequence[float]) -> None:
@@ -111,7 +111,7 @@ class CommandedRobot:
         Raises:
             UnknownNameError: there is no such body.
         """
-        model = self.simulation.parts.physics.model
+        model = self._physics.model
         if model is not self._bodies_of:
             self._bodies, self._bodies_of = {}, model
         if name not in self._bodies:
@@ -125,7 +125,7 @@ class CommandedRobot:
     def point_at(self, link: str, positions: Array) -> Array:
         """Return where a link would be with the joints at positions, shape (3,)."""
         self.body(link)
-        physics = self.simulation.parts.physics
+        physics = self._physics
         if self._motions is None:
             self._motions = EntityMotions(physics.model)
         qpos = physics.built.qpos.copy()

@@ -75,3 +75,24 @@ def test_copies_of_the_pick_have_the_same_bits(env: ArmPick):
             assert np.array_equal(seen[name][8], values)
         seen, wanted = batch.step(np.tile(action, (9, 1)))[0], env.step(action)[0]
     batch.close()
+
+
+def test_the_world_of_the_launch_makes_no_difference(env: ArmPick):
+    launched = ArmPick(actions="position", simulation={"world": "pick_and_place_demo"})
+    bodies = [one.simulation.parts.physics.model.nbody for one in (env, launched)]
+    assert bodies[0] < bodies[1]  # Groceries, which the arm does not reach.
+    env.reset(seed=2)
+    launched.reset(seed=2)
+    middle, half = (env.upper + env.lower) / 2.0, (env.upper - env.lower) / 2.0
+    for goal in goals(env):
+        action = ((goal - middle) / half).astype(np.float32)
+        seen, reward, lifted, *_ = env.step(action)
+        there, reward_there, lifted_there, *_ = launched.step(action)
+        for name, values in seen.items():
+            assert there[name] == pytest.approx(values, abs=1e-6)
+        assert reward_there == pytest.approx(reward, abs=1e-6)
+        assert lifted_there == lifted
+        if lifted:
+            break
+    assert lifted
+    launched.close()
