@@ -335,7 +335,7 @@ class Servo:
         # In a fixed order, unlike a product of matrices: `ServoBatch` adds in the same order.
         felt = efforts[self._dofs].tolist()
         for index, follower, ratio in self._ratios:
-            felt[index] += ratio * float(efforts[follower])
+            felt[index] += ratio * efforts.item(follower)
         return felt
 
     def _slow_down(self, efforts: list[float], gravity: list[float]) -> None:
