@@ -66,4 +66,36 @@ class OpenWorld:
     uri: str
 
 
-WorldRequest = LookAtThing | AddThing | AddFile | PlaceThing | PushThing | RemoveThing | OpenWorld
+@dataclass(frozen=True, slots=True)
+class SetGravity:
+    """Set the gravity in the world, in m/s²."""
+
+    gravity: Vector
+
+
+@dataclass(frozen=True, slots=True)
+class SetProperties:
+    """Set mass or friction of a thing; None leaves one as it is.
+
+    Attributes:
+        name: the thing.
+        mass_kg: its mass.
+        friction: its coefficient of sliding friction.
+    """
+
+    name: str
+    mass_kg: float | None
+    friction: float | None
+
+
+WorldRequest = (
+    LookAtThing
+    | AddThing
+    | AddFile
+    | PlaceThing
+    | PushThing
+    | RemoveThing
+    | OpenWorld
+    | SetGravity
+    | SetProperties
+)

@@ -10,13 +10,14 @@ from arm_node.rigid_transform import RigidTransform
 from arm_viewer.channel import Browser, Channel, Message
 from arm_viewer.panels.file_drop import FileDrop
 from arm_viewer.panels.panel import PROBLEM_COLOUR, distinct, in_order, note, show
+from arm_viewer.panels.property_fields import GravityFields, PropertyFields
 from arm_viewer.panels.thing_fields import POSITION_M, ThingFieldsPanel
 from arm_viewer.requests import Send
 from arm_viewer.scene.drag_handle import DragHandle
 from arm_viewer.snapshot import Snapshot
 from arm_viewer.world.dropped_file import DroppedFile
 from arm_viewer.world.shape_fields import read_numbers, read_pose
-from arm_viewer.world.world_view import Thing, WorldView
+from arm_viewer.world.world_view import Thing, ThingProperties, WorldView, gravity_words
 from arm_viewer.world_requests import (
     AddFile,
     LookAtThing,
@@ -63,6 +64,8 @@ class WorldPanel:
             self._list = gui.add_html(note(NO_THINGS))
         with gui.add_folder("Chosen thing") as self._deeds:
             self._build_deeds(gui)
+        with gui.add_folder("Gravity", expand_by_default=False) as self._gravities:
+            self._gravity = GravityFields(gui)
         with gui.add_folder("Add", expand_by_default=False) as adding:
             self._fields = ThingFieldsPanel(gui)
             add = gui.add_button("Add")
@@ -75,6 +78,7 @@ class WorldPanel:
             load = gui.add_button("Load", hint="replaces everything around the robots")
         self._places = (things, adding, files, worlds)
         self._said = gui.add_html("", visible=False)
+        self._gravity.set.on_click(in_order(lambda _: self._try(self._gravity.request)))
         add.on_click(in_order(lambda _: self._try(self._fields.request)))
         load.on_click(in_order(lambda _: self._load()))
 
@@ -94,13 +98,15 @@ class WorldPanel:
         if chosen != self._followed:
             self._followed = chosen
             self._send(LookAtThing(chosen))
-        self._set(self._list, rows(things, chosen) if things else note(NO_THINGS))
+        self._set(self._list, listed(self._view, chosen))
+        show(self._gravities, self._view.gravity is not None)
+        self._gravity.show(self._view.gravity)
         worlds = distinct(self._view.worlds) or NO_WORLDS
         if self._world.options != worlds:
             self._world.options = worlds
         show(self._deeds, bool(chosen))
         if chosen:
-            self._show_chosen(chosen, things[chosen])
+            self._show_chosen(chosen, things[chosen], properties_of(self._view, chosen))
         else:
             self._handle.hide()
         answer = self._view.answer
@@ -119,13 +125,16 @@ class WorldPanel:
         move = gui.add_button("Move", hint="or drag the arrows and rings in the view")
         self._push_by = gui.add_text("Push to", PUSH_M_S, hint="velocity x y z in m/s")
         self._push = gui.add_button("Push")
+        self._properties = PropertyFields(gui)
         delete = gui.add_button("Delete", color="red")
         move.on_click(in_order(lambda _: self._try(self._move)))
         self._push.on_click(in_order(lambda _: self._try(self._pushed)))
+        self._properties.set.on_click(in_order(lambda _: self._try(self._properties.request)))
         delete.on_click(in_order(lambda _: self._try(lambda: RemoveThing(self._chosen))))
 
-    def _show_chosen(self, name: str, thing: Thing) -> None:
-        self._set(self._where, note(described(name, thing)))
+    def _show_chosen(self, name: str, thing: Thing, properties: ThingProperties) -> None:
+        self._set(self._where, note(described(name, thing, properties)))
+        self._properties.show(properties)
         show(self._push_by, thing.can_move)
         show(self._push, thing.can_move)
         pulled, is_dragged = self._handle.pulled(), self._handle.is_dragged
@@ -183,9 +192,21 @@ def rows(things: Mapping[str, Thing], chosen: str) -> str:
     return f'<div class="arm-things">{buttons}</div>'
 
 
-def described(name: str, thing: Thing) -> str:
-    """Return where a thing is, rounded to mm and hundredths of a radian."""
+def listed(view: WorldView, chosen: str) -> str:
+    """Return the things and the gravity, as HTML."""
+    things = rows(view.things, chosen) if view.things else note(NO_THINGS)
+    gravity = note(f"Gravity {gravity_words(view.gravity)}") if view.gravity else ""
+    return things + gravity
+
+
+def properties_of(view: WorldView, name: str) -> ThingProperties:
+    """Return the properties of a thing, as far as they are known."""
+    return view.properties if view.properties.name == name else ThingProperties(name)
+
+
+def described(name: str, thing: Thing, properties: ThingProperties) -> str:
+    """Return where a thing is, rounded to mm and hundredths of a radian, and what it is like."""
     position = " ".join(f"{value:.3f}" for value in thing.pose.position)
     turned = " ".join(f"{value:.2f}" for value in thing.pose.rpy())
     speed = f"; {thing.speed:.2f} m/s" if thing.can_move else ""
-    return f"{name}: x y z {position} m, roll pitch yaw {turned} rad{speed}"
+    return f"{name}: x y z {position} m, roll pitch yaw {turned} rad{speed}\n{properties.words()}"

@@ -2,13 +2,15 @@
 
 import math
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Twist, Vector3
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.node import Node
 from simulation_interfaces.msg import EntityCategory, EntityFilters, EntityState, Resource
 from simulation_interfaces.srv import (
@@ -23,11 +25,24 @@ from simulation_interfaces.srv import (
     SpawnEntity,
 )
 
-from arm_node.rigid_transform import RigidTransform
+from arm_node.rigid_transform import RigidTransform, Vector
 from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.property_observer import (
+    FRICTION,
+    GRAVITY,
+    MASS,
+    PropertyObserver,
+    parameter_of,
+)
 from arm_viewer.ros.service_caller import ServiceCaller
 from arm_viewer.world.dropped_file import FileCheck
-from arm_viewer.world.world_view import Thing, WorldAnswer, WorldView
+from arm_viewer.world.world_view import (
+    Thing,
+    ThingProperties,
+    WorldAnswer,
+    WorldView,
+    gravity_words,
+)
 from arm_viewer.world_requests import (
     AddFile,
     AddThing,
@@ -36,10 +51,13 @@ from arm_viewer.world_requests import (
     PlaceThing,
     PushThing,
     RemoveThing,
+    SetGravity,
+    SetProperties,
     WorldRequest,
 )
 
 SERVICE = "/get_entities_states"
+SET_PARAMETERS = "/simulation/set_parameters_atomically"
 SERVICES = {
     SERVICE: GetEntitiesStates,
     "/get_entities": GetEntities,
@@ -50,6 +68,7 @@ SERVICES = {
     "/load_world": LoadWorld,
     "/get_available_worlds": GetAvailableWorlds,
     "/get_current_world": GetCurrentWorld,
+    SET_PARAMETERS: SetParametersAtomically,
 }
 ANSWER_S = 60.0
 """Building a world with large meshes takes its time."""
@@ -88,6 +107,7 @@ class WorldClient:
         self._node = node
         self._is_watched = is_watched
         self._callers: dict[str, ServiceCaller] = {}
+        self._properties: PropertyObserver | None = None
         self._looks = 0
         self._moving: frozenset[str] = frozenset()
         self._followed, self._followed_s = "", -math.inf
@@ -104,13 +124,18 @@ class WorldClient:
                 name: ServiceCaller(self._node, type_, name, ANSWER_S)
                 for name, type_ in SERVICES.items()
             }
+            self._properties = PropertyObserver(self._node, self._take_properties)
             self.view, self._looks = WorldView(), 0
         elif not found and self._callers:
             for caller in self._callers.values():
                 caller.close()
             self._callers, self.view, self._wishes = {}, None, []
+            if self._properties is not None:
+                self._properties.close()
+                self._properties = None
         if found and self._is_watched():
             self._ask_for_things()
+            self._ask_for_properties()
             if self._looks % RARE == 0:
                 self._ask("/get_available_worlds", self._take_worlds)
                 self._ask("/get_current_world", self._take_world)
@@ -137,6 +162,7 @@ class WorldClient:
         """Make a change as soon as possible."""
         if isinstance(request, LookAtThing):
             self._followed = request.name
+            self._ask_for_properties()
         elif not self._callers:
             # Without a simulation there is no view that could say so: the panel does.
             return
@@ -161,6 +187,15 @@ class WorldClient:
         self._ask("/get_entities", self._take_moving, filters=MOVING)
         self._ask(SERVICE, self._take_things, filters=THINGS)
 
+    def _ask_for_properties(self) -> None:
+        if self._properties is not None:
+            self._properties.ask(self._followed)
+
+    def _take_properties(self) -> None:
+        if self._properties is not None:
+            observed = self._properties
+            self._change(gravity=observed.gravity, properties=observed.properties)
+
     def _take_check(self, check: FileCheck, pose: RigidTransform) -> None:
         if check.checked is None:
             self._say(check.problem, False)
@@ -169,12 +204,13 @@ class WorldClient:
             self._wishes.append(_wish(request, f"\n{check.checked.report}"))
 
     def _end(self, wish: _WorldChange, answer: Any) -> None:
-        if answer.result.result != RESULT_OK:
-            said = answer.result.error_message or f"refused (result {answer.result.result})"
-            self._say(said, False)
+        if problem := _problem(answer):
+            self._say(problem, False)
         elif done := wish.done(answer):
             self._say(done, True)
-        if wish.service != "/set_entity_state":
+        if wish.service == SET_PARAMETERS:
+            self._ask_for_properties()
+        elif wish.service != "/set_entity_state":
             self._ask_for_things()
 
     def _say(self, text: str, is_done: bool) -> None:
@@ -237,8 +273,38 @@ def _wish(request: WorldRequest, report: str = "") -> _WorldChange:
         case OpenWorld(uri):
             question = LoadWorld.Request(world_resource=Resource(uri=uri))
             return _WorldChange("/load_world", question, lambda a: f"Loaded {a.world.name}")
+        case SetGravity(gravity):
+            return _setting({GRAVITY: gravity}, f"Gravity is {gravity_words(gravity)}")
+        case SetProperties(name, mass_kg, friction):
+            wanted = {MASS: mass_kg, FRICTION: friction}
+            values = {parameter_of(name, kind): v for kind, v in wanted.items() if v is not None}
+            return _setting(values, f"{name}: {ThingProperties(name, mass_kg, friction).words()}")
         case _:
             raise TypeError(f"{type(request).__name__} changes nothing by a service")
+
+
+def _setting(values: Mapping[str, float | Vector], done: str) -> _WorldChange:
+    """Return the change that sets parameters, all or none."""
+    parameters = [Parameter(name=name, value=_value(value)) for name, value in values.items()]
+    question = SetParametersAtomically.Request(parameters=parameters)
+    return _WorldChange(SET_PARAMETERS, question, lambda _: done)
+
+
+def _value(value: float | Vector) -> ParameterValue:
+    if isinstance(value, tuple):
+        kind = ParameterType.PARAMETER_DOUBLE_ARRAY
+        return ParameterValue(type=kind, double_array_value=list(value))
+    return ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=value)
+
+
+def _problem(answer: Any) -> str:
+    """Return why a change was refused, "" if it was made."""
+    result = answer.result
+    if isinstance(answer, SetParametersAtomically.Response):
+        return "" if result.successful else result.reason or "refused"
+    if result.result == RESULT_OK:
+        return ""
+    return result.error_message or f"refused (result {result.result})"
 
 
 def _places(wish: _WorldChange, name: str) -> bool:

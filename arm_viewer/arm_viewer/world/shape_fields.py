@@ -56,6 +56,21 @@ def read_pose(position: str, rpy: str) -> RigidTransform:
     return RigidTransform((x, y, z), (i, j, k, w))
 
 
+def read_number(what: str, text: str) -> float:
+    """Return a finite number.
+
+    Raises:
+        ValueError: the text is none; the message is a sentence.
+    """
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError(f"The {what} is not a number: '{text}'")
+    return number
+
+
 def read_numbers(what: str, text: str, names: tuple[str, ...]) -> tuple[float, ...]:
     """Return as many finite numbers as there are names.
 

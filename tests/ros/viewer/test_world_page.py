@@ -84,6 +84,13 @@ class World(PageUser):
     def drop(self, name, data):
         self.page.evaluate(DROP, [name, base64.b64encode(data).decode()])
 
+    def parameter(self, name):
+        from rcl_interfaces.srv import GetParameters
+
+        request = GetParameters.Request(names=[name])
+        [value] = self.client.call(GetParameters, "/simulation/get_parameters", request).values
+        return value
+
     def position(self, name):
         from simulation_interfaces.srv import GetEntityState
 
@@ -111,6 +118,51 @@ def test_a_box_is_added_pushed_moved_and_deleted(world):
     world.press("Delete")
     world.thing("box").wait_for(state="detached")
     world.shows("Deleted box")
+
+
+def test_mass_and_friction_of_a_box_are_shown_and_set(world):
+    world.unfold("Add", "Add")
+    world.enter("Position", "0.3 0.1 0.03")
+    world.press("Add")
+    world.thing("box").wait_for()
+    world.choose("box")
+    world.shows("0.1 kg, friction 1")
+    world.enter("Mass to", "0.25")
+    world.enter("Friction to", "0.3")
+    world.press("Set")
+    world.shows("box: 0.25 kg, friction 0.3")
+    assert world.parameter("entities.box.mass").double_value == 0.25
+    assert world.parameter("entities.box.friction").double_value == 0.3
+    world.shows("0.25 kg, friction 0.3")
+    world.press("Set")
+    world.shows("Type another mass or friction first: these are the present ones.")
+    world.enter("Mass to", "-1")
+    world.press("Set")
+    world.shows("the mass of 'box' is 1e-06 to 1e+06 kg, not -1 kg")
+    world.enter("Mass to", "heavy")
+    world.press("Set")
+    world.shows("The mass is not a number: 'heavy'")
+    assert world.parameter("entities.box.mass").double_value == 0.25
+    world.press("Delete")
+    world.thing("box").wait_for(state="detached")
+
+
+def test_gravity_is_shown_and_set(world):
+    world.shows("Gravity 0 0 -9.81 m/s²")
+    world.unfold("Gravity", "Set gravity")
+    world.press("Moon")
+    field = world.page.locator("xpath=//label[.='Gravity']/following::input[1]")
+    world.wait_until(lambda: field.input_value() == "0 0 -1.62", "the Moon's gravity in the field")
+    world.press("Set gravity")
+    world.shows("Gravity 0 0 -1.62 m/s²")
+    assert list(world.parameter("gravity").double_array_value) == [0.0, 0.0, -1.62]
+    world.enter("Gravity", "0 0 -1000")
+    world.press("Set gravity")
+    world.shows("the gravity is three numbers x y z from -100 to 100 m/s2")
+    world.enter("Gravity", "0 0 -9.81")
+    world.press("Set gravity")
+    world.shows("Gravity is 0 0 -9.81 m/s²")
+    assert list(world.parameter("gravity").double_array_value) == [0.0, 0.0, -9.81]
 
 
 def test_a_wrong_field_is_a_sentence(world):
