@@ -2,11 +2,14 @@
 
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from math import dist, inf
 from typing import Any
 
 import pytest
 from programs import Program
+from robots import MYCOBOT_ARM
 
 pytestmark = pytest.mark.ros
 
@@ -17,6 +20,11 @@ DIMENSIONS = [0.35, 0.0125]
 """Of the red cylinder."""
 PLACE = (0.22, 0.12)
 TIMEOUT_S = 250.0
+BEHIND = (-0.3, -1.2, -0.3, 1.0, 0.0, 0.0)
+"""The arm in the crop, behind the cylinder as the camera sees it."""
+SWAYING_RAD, SWAY_S, SWAYS = 0.1, 0.5, 200
+"""Its first joint to both sides: 30 mm of the hand in 0.1 s, three times the padding."""
+FASTER_RAD_S = 0.1
 
 
 @pytest.fixture(scope="module")
@@ -33,6 +41,84 @@ def ask(client: Any, shape: str, *dimensions: float) -> Any:
 
     request = GetPlanningScene.Request(target_shape=shape, target_dimensions=dimensions)
     return client.call(GetPlanningScene, SERVICE, request)
+
+
+def centres(answer: Any) -> list[tuple[float, ...]]:
+    positions = [each.pose.position for each in answer.scene_world.collision_objects]
+    return [(one.x, one.y, one.z) for one in positions]
+
+
+def seen_with_the_robot(client: Any, seen: Any) -> list[Any]:
+    """Return what the points of an answer show in the tutorial's crop, the robot as well."""
+    from arm_planning.perception.table_objects import Crop, objects_in_view
+    from arm_planning.ros.point_clouds import points_of
+    from arm_planning.ros.transform_reader import TransformReader
+
+    reader, frame = TransformReader(client.node), seen.full_cloud.header.frame_id
+    camera = client.wait_until(lambda: reader.pose(frame, "base_link"), f"{frame} on /tf")
+    crop = Crop((0.1, 0.0, -inf), (1.1, 0.9, inf))
+    return list(objects_in_view(points_of(seen.full_cloud), camera, crop, "s", 0.01).objects)
+
+
+def assert_same_things(seen: Any, before: Any) -> None:
+    """Check that the target is as large as it is, and that all is where it was before."""
+    assert seen.success
+    objects = {each.id: each for each in seen.scene_world.collision_objects}
+    target = objects[seen.target_object_id]
+    assert list(target.primitives[0].dimensions) == pytest.approx(DIMENSIONS, rel=0.1)
+    position = target.pose.position
+    assert (position.x, position.y) == pytest.approx(PLACE, abs=5e-3)
+    found, expected = centres(seen), centres(before)
+    assert len(found) == len(expected), f"{found} instead of {expected}"
+    off = [min(dist(one, other) for other in expected) for one in found]
+    assert max(off) < 5e-3, f"{found} instead of {expected}"
+
+
+def in_the_crop(state: Any) -> bool:
+    """Tell whether the arm has gone as far as it is in the crop."""
+    at = dict(zip(state.name, state.position, strict=True))
+    return at[MYCOBOT_ARM[1]] < BEHIND[1] + 0.02
+
+
+def speed_at(stamp: Any, states: Any) -> float:
+    """Return how fast the arm's first joint was at a time, in rad/s."""
+
+    def passed(messages: list[Any]) -> bool:
+        return messages and since(messages[-1].header.stamp) >= 0.0
+
+    def since(other: Any) -> float:
+        return other.sec - stamp.sec + 1e-9 * (other.nanosec - stamp.nanosec)
+
+    messages = states.wait_until(passed, "the joint states of the picture")
+    nearest = min(messages, key=lambda message: abs(since(message.header.stamp)))
+    return abs(nearest.velocity[nearest.name.index(MYCOBOT_ARM[0])])
+
+
+@contextmanager
+def arm_following(client: Any, points: Sequence[tuple[float, Sequence[float]]]) -> Iterator[Any]:
+    """Send the arm along points of time and positions; yield the future of the result.
+
+    In the end the arm goes home.
+    """
+    from control_msgs.action import FollowJointTrajectory
+    from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+    with client.tidied():
+        action = client.action(FollowJointTrajectory, "/arm_controller/follow_joint_trajectory")
+
+        def send(points: Sequence[tuple[float, Sequence[float]]]) -> Any:
+            path = JointTrajectory(joint_names=MYCOBOT_ARM)
+            for time_s, positions in points:
+                point = JointTrajectoryPoint(positions=positions)
+                point.time_from_start.sec = int(time_s)
+                point.time_from_start.nanosec = round(time_s % 1 * 1e9)
+                path.points.append(point)
+            ended = client.send_goal(action, FollowJointTrajectory.Goal(trajectory=path))
+            assert ended is not None, "the goal is rejected"
+            return ended
+
+        yield send(points)
+        assert client.result_of(send([(3.0, [0.0] * 6)]), "the way home").result.error_code == 0
 
 
 def test_the_red_cylinder_is_the_target_and_stands_on_the_surface(server, client_for_file):
@@ -53,6 +139,41 @@ def test_the_red_cylinder_is_the_target_and_stands_on_the_surface(server, client
         seen.rgb_image.height,
         seen.rgb_image.width,
     )
+
+
+def test_an_arm_that_stands_in_the_crop_is_not_among_the_things(server, client_for_file):
+    without = ask(client_for_file, "cylinder", *DIMENSIONS)
+    with arm_following(client_for_file, [(3.0, BEHIND)]) as ended:
+        result = client_for_file.result_of(ended, "the way behind the cylinder").result
+        assert result.error_code == 0, result.error_string
+        seen = ask(client_for_file, "cylinder", *DIMENSIONS)
+    assert_same_things(seen, without)
+    robot_too = seen_with_the_robot(client_for_file, seen)
+    assert len(robot_too) > len(seen.scene_world.collision_objects)
+
+
+def test_an_arm_that_moves_in_the_crop_is_not_among_the_things(server, client_for_file):
+    from sensor_msgs.msg import JointState
+
+    without = ask(client_for_file, "cylinder", *DIMENSIONS)
+    turn, *others = BEHIND
+    ways = [
+        (3.0 + SWAY_S * number, (turn + SWAYING_RAD * (-1) ** number, *others))
+        for number in range(SWAYS)
+    ]
+    with arm_following(client_for_file, ways) as ended:
+        states = client_for_file.subscribe(JointState, "/joint_states")
+        states.wait_until(
+            lambda messages: messages and in_the_crop(messages[-1]), "the arm in the crop"
+        )
+        answers = [ask(client_for_file, "cylinder", *DIMENSIONS) for _ in range(3)]
+        assert not ended.done(), "the arm had stopped before the last picture"
+        speeds = [speed_at(answer.full_cloud.header.stamp, states) for answer in answers]
+    assert max(speeds) > FASTER_RAD_S
+    for answer in answers:
+        assert_same_things(answer, without)
+        robot_too = seen_with_the_robot(client_for_file, answer)
+        assert len(robot_too) > len(answer.scene_world.collision_objects)
 
 
 @pytest.mark.parametrize(
