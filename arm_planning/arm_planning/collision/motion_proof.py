@@ -4,7 +4,8 @@ Between two states a pair of bodies comes nearer by no more than the sum, over t
 them, of the joint's motion times the largest distance from its axis (`reach`). So a state in which
 the bodies are a distance apart proves an interval around it (F. Schwarzer, M. Saha and J.-C.
 Latombe, "Adaptive dynamic collision checking for single and multiple articulated robots in complex
-environments", 2005). The proof goes along the path from one such interval to the next.
+environments", 2005). The proof goes along the path from one such interval to the next. Where these
+intervals are short, the speeds in the state prove longer ones (`approach`).
 """
 
 from collections.abc import Callable, Iterable
@@ -15,6 +16,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_planning.collision.approach import Approach, Near
 from arm_planning.collision.contact import CollisionContact
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.reach import Reach, reach
@@ -30,6 +32,11 @@ MAX_STATES = 20_000
 """Most states that a proof of one path looks at, about a second."""
 FIRST_MARGIN_M = 0.05
 STEP_OF_MARGINS = 1.4
+LOOK_AHEAD = 2.0
+"""Factor of an interval by `reach` for which distances are found in the next state: speeds seldom
+prove more, and farther bodies cost time."""
+WORTH_SPEEDS = 16
+"""Intervals by `reach` that the rest of a chord must need for speeds to be worth their time."""
 LEAST_PART = 1e-9
 NOT_MOVING = 1e-12
 CONTACT_FULL = int(mujoco.mjtWarning.mjWARN_CONTACTFULL)
@@ -149,6 +156,7 @@ class MotionProof:
         model = self._model
         self._reach, self._count = bounds, len(bounds.pairs)
         self._bounds = bounds.pairs.reshape(-1, model.nq)
+        self._approach = Approach(model, self._data, bounds)
         self._part_of = bounds.part.tolist()
         first, second = bounds.part[model.pair_geom1], bounds.part[model.pair_geom2]
         # MuJoCo adds the margins of two geoms, so those of what is fixed stay 0.
@@ -212,9 +220,9 @@ class MotionProof:
         rates = np.maximum(rates, NOT_MOVING)
         fastest = float(rates.max())
         set_margins = self._margin_setter(rates, lost)
+        nearest = self._searcher(rates, lost, floors)
+        self._approach.begin(change)
         model, data, qpos = self._model, self._data, self._data.qpos
-        # Contacts are few: one by one is faster than as arrays.
-        rate_of, lost_of, floor_of = rates.tolist(), lost.tolist(), floors.tolist()
         proved, guess = 0.0, min(1.0, self._margin_m / fastest)
         # Proved intervals farther on; what lies before them is not.
         ahead: list[tuple[float, float]] = []
@@ -228,16 +236,15 @@ class MotionProof:
             np.add(qpos, start, out=qpos)
             mujoco.mj_kinematics(model, data)
             mujoco.mj_collision(model, data)
-            clear, is_close = horizon, False
-            for pair, distance in self._distances():
-                slack = distance - lost_of[pair]
-                is_close = is_close or slack < floor_of[pair]
-                clear = min(clear, slack / rate_of[pair])
+            near, is_close = nearest(horizon)
             if is_close:
                 obstruction = self._obstruction(segment, at, lost, floors)
                 if obstruction is not None:
                     return obstruction
-            guess = clear if clear < horizon else 2.0 * horizon
+            clear = least = near[0][0] if near else horizon
+            if near and least * WORTH_SPEEDS < 1.0 - proved:
+                clear = self._approach.clear(near, horizon)
+            guess = LOOK_AHEAD * least if clear == horizon else min(clear, LOOK_AHEAD * least)
             if at - clear > proved:
                 ahead.append((at - clear, at + clear))
                 continue
@@ -268,20 +275,49 @@ class MotionProof:
 
         return set_margins
 
-    def _distances(self) -> Iterable[tuple[int, float]]:
-        """Return the pair of parts and the distance of each contact that was found."""
+    def _searcher(
+        self, rates: Array, lost: Array, floors: Array
+    ) -> Callable[[float], tuple[list[Near], bool]]:
+        """Return what finds the pairs that are near, and whether one is too close.
+
+        It returns those that `reach` proves for less than a part of the chord, the most urgent
+        first.
+        """
+        # Contacts are few: one by one is faster than as arrays.
+        rate_of, lost_of, floor_of = rates.tolist(), lost.tolist(), floors.tolist()
+
+        def nearest(horizon: float) -> tuple[list[Near], bool]:
+            near: list[Near] = []
+            is_close = False
+            for pair, first, second, distance in self._distances():
+                slack = distance - lost_of[pair]
+                is_close = is_close or slack < floor_of[pair]
+                part = slack / rate_of[pair]
+                if part < horizon:
+                    near.append((part, slack, pair, first, second))
+            near.sort()
+            return near, is_close
+
+        return nearest
+
+    def _distances(self) -> Iterable[tuple[int, int, int, float]]:
+        """Return the pair of parts, the geoms and the distance of each contact that was found."""
         if not self._data.ncon:
             return ()
         found, part, count = self._data.contact, self._part_of, self._count
-        pairs = [part[first] * count + part[second] for first, second in found.geom.tolist()]
-        return zip(pairs, found.dist.tolist(), strict=True)
+        return [
+            (part[first] * count + part[second], first, second, distance)
+            for (first, second), distance in zip(
+                found.geom.tolist(), found.dist.tolist(), strict=True
+            )
+        ]
 
     def _obstruction(
         self, segment: int, at: float, lost: Array, floors: Array
     ) -> Obstruction | None:
         """Return the deepest of the contacts that are too close, after the exceptions."""
         contacts = list(self._posed.found())
-        parts = [pair for pair, _ in self._distances()]
+        parts = [pair for pair, *_ in self._distances()]
         slack, floors = self._data.contact.dist - lost[parts], floors[parts]
         pairs = [self._bodies_of(geoms) for geoms in self._data.contact.geom.tolist()]
         if self._relaxed is None and float(slack.min()) > LEAST_FLOOR_M:

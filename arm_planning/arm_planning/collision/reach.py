@@ -24,11 +24,14 @@ class Reach:
             metre of each coordinate, (parts, parts, coordinates): 0 for joints that are not on the
             way between them, 1 for sliding joints, and for turning joints the largest distance from
             the axis that a point of the part beyond can have.
+        carries: whether one of two parts carries the other, so that all joints between them move
+            the one with the larger number against the other, (parts, parts).
     """
 
     part: NDArray[np.intp]
     part_of_body: NDArray[np.intp]
     pairs: Array
+    carries: NDArray[np.bool_]
 
 
 def reach(model: mujoco.MjModel, lower: Array, upper: Array) -> Reach:
@@ -48,7 +51,8 @@ def reach(model: mujoco.MjModel, lower: Array, upper: Array) -> Reach:
     carried = _carried(model, welds)
     apart = carried[:, None] ^ carried[None]
     pairs = np.where(carried[:, None], radius[:, None], radius[None]) * apart
-    return Reach(part, part_of_body, pairs)
+    beyond = np.asarray((carried[:, None] | ~carried[None]).all(axis=2))
+    return Reach(part, part_of_body, pairs, beyond | beyond.T)
 
 
 def out_of_reach(model: mujoco.MjModel) -> NDArray[np.bool_]:

@@ -49,7 +49,7 @@ def planner_for(planner_id: str, parameters: Mapping[str, float] | None = None) 
     given = {key: value for key, value in (parameters or {}).items() if key in known}
     if name == DEFAULT:
         reach = given.get(RANGE, 0.0)
-        return RrtConnectPlanner((reach,)) if reach else RrtConnectPlanner()
+        return RrtConnectPlanner(reach) if reach else RrtConnectPlanner()
     from arm_planning.planners.ompl.planner import OmplPlanner
 
     return OmplPlanner(name, given)

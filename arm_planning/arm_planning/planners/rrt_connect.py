@@ -4,7 +4,6 @@ J. Kuffner, S. LaValle: RRT-Connect: An efficient approach to single-query path 
 """
 
 from collections.abc import Iterator, Sequence
-from itertools import cycle
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +16,9 @@ Array = NDArray[np.float64]
 
 BLOCK = 256
 """Random states that are drawn at once."""
-REACHES = (4.0, 4.0, 2.0, 2.0)
-"""Longest moves, in the joints' units, of iterations in turn, each for both trees. Long ones end
-soon where there is room; shorter ones make shorter paths, and turn more corners."""
+REACH = 2.0
+"""Longest move, in the joints' units. Longer ones end soon where there is room; shorter ones make
+shorter paths, and turn more corners."""
 
 
 def rrt_connect(
@@ -27,7 +26,7 @@ def rrt_connect(
     start: Array,
     goals: Array,
     seed: Sequence[int],
-    reaches: Sequence[float] = REACHES,
+    reach: float = REACH,
 ) -> Iterator[Array | None]:
     """Search for a path, one iteration at each step of the iterator.
 
@@ -36,14 +35,14 @@ def rrt_connect(
         start: where the path begins, (n,).
         goals: where it may end, (g, n).
         seed: seed of the random numbers.
-        reaches: longest moves, in the joints' units, of iterations in turn.
+        reach: longest move, in the joints' units.
 
     Yields:
         None after each iteration that found no path; then the path, (m, n), once.
     """
     from_start, from_goal = Tree(start[None, :]), Tree(goals)
     explorer, follower = from_start, from_goal
-    for sample, reach in zip(_samples(space, seed), cycle(reaches), strict=False):
+    for sample in _samples(space, seed):
         grown = _explore(space, explorer, sample, reach)
         if grown is not None:
             met = _follow(space, follower, explorer.state(grown), reach)

@@ -1,7 +1,7 @@
 """The suite's own planner: a straight path first, then RRT-Connect, shortcuts and a proof."""
 
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planners.mend import mend
 from arm_planning.planners.problem import PlanningProblem, path_length
-from arm_planning.planners.rrt_connect import REACHES, rrt_connect
+from arm_planning.planners.rrt_connect import REACH, rrt_connect
 from arm_planning.planners.shortcut import shorten
 from arm_planning.planners.space import Space, space_of
 from arm_planning.planners.straight import straight_to_any
@@ -31,10 +31,10 @@ class RrtConnectPlanner:
     several attempts, those that finish in time count.
 
     Attributes:
-        reaches: longest moves of a tree, in the joints' units, of iterations in turn.
+        reach: longest move of a tree, in the joints' units.
     """
 
-    reaches: tuple[float, ...] = REACHES
+    reach: float = REACH
 
     def plan(self, problem: PlanningProblem) -> Array:
         """Return a proved path, (m, n); see `PathPlanner`."""
@@ -58,7 +58,7 @@ class RrtConnectPlanner:
         space = space_of(problem, goals, is_proved=is_proved)
         has_path = False
         try:
-            for attempt, found in race(problem, space, goals, self.reaches):
+            for attempt, found in race(problem, space, goals, self.reach):
                 path = shortened_and_proved(problem, space, found, attempt)
                 if path is not None:
                     has_path = True
@@ -122,7 +122,7 @@ def check_start_is_proved(problem: PlanningProblem) -> None:
 
 
 def race(
-    problem: PlanningProblem, space: Space, goals: Array, reaches: Sequence[float]
+    problem: PlanningProblem, space: Space, goals: Array, reach: float
 ) -> Iterator[tuple[int, Array]]:
     """Search with several streams of random numbers in turn; yield each path that is found.
 
@@ -134,7 +134,7 @@ def race(
         PlanningError: TIMED_OUT.
     """
     searches = {
-        attempt: rrt_connect(space, problem.start, goals, (problem.seed, attempt), reaches)
+        attempt: rrt_connect(space, problem.start, goals, (problem.seed, attempt), reach)
         for attempt in range(problem.attempts)
     }
     iterations, last = 0, np.inf

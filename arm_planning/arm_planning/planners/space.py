@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 
 SAMPLE_STEP = 0.05
 """Largest change of a joint between two samples of a straight move, rad or m."""
+SEARCH_STEP = 0.1
+"""The same for the moves of a search: few of them are part of the path, which is proved."""
 BACK_OFF = 1
 """How many samples before an obstacle a move stops: the next one may already touch it."""
 SHORTEST = 0.2
@@ -95,7 +97,7 @@ class SampledSpace:
     def advance(self, a: Array, b: Array) -> tuple[Array, bool]:
         """Go straight until something blocks, and stop a little before it."""
         change = b - a
-        count = _samples(change)
+        count = _samples(change, SEARCH_STEP)
         step = change / count
         # Most moves are blocked soon, so the sample without which they are too short comes first.
         least = min(ceil(SHORTEST / max(length(step), SHORTEST / count)) + BACK_OFF, count)
@@ -108,7 +110,7 @@ class SampledSpace:
     def connect(self, a: Array, b: Array) -> Array | None:
         """Go straight; samples are taken in the order in which they find obstacles soonest."""
         change = b - a
-        count = _samples(change)
+        count = _samples(change, SAMPLE_STEP)
         states = a + _from_coarse_to_fine(count) * (change / count)
         return b[None, :] if self._free_count(states) == count else None
 
@@ -132,9 +134,9 @@ def _from_coarse_to_fine(count: int) -> Array:
     return np.array(order, np.float64)[:, None]
 
 
-def _samples(change: Array) -> int:
+def _samples(change: Array, step: float) -> int:
     # On so few numbers NumPy is slower.
-    return int(max(map(abs, change.tolist())) / SAMPLE_STEP) + 1
+    return int(max(map(abs, change.tolist())) / step) + 1
 
 
 class ProvedSpace:

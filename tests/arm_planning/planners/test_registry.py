@@ -39,7 +39,7 @@ def test_without_ompl_there_is_the_own_planner_and_a_hint(monkeypatch):
 
 
 def test_a_range_limits_the_moves_of_the_own_planner():
-    assert planner_for("RRTConnectkConfigDefault", {"range": 0.5}) == RrtConnectPlanner((0.5,))
+    assert planner_for("RRTConnectkConfigDefault", {"range": 0.5}) == RrtConnectPlanner(0.5)
     assert planner_for("", {"range": 0.0}) == planner_for("")
 
 

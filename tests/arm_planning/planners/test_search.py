@@ -197,7 +197,7 @@ def test_whatever_path_comes_is_free(discs, seed):
 def test_no_move_of_a_tree_is_longer_than_its_reach(reach):
     problem = planar_problem(PlanarArm(POSTS), START, GOAL)
     goals = np.array([GOAL])
-    search = rrt_connect(space_of(problem, goals), np.array(START), goals, (1,), (reach,))
+    search = rrt_connect(space_of(problem, goals), np.array(START), goals, (1,), reach)
     path = next(path for path in search if path is not None)
     longest = np.linalg.norm(np.diff(path, axis=0), axis=1).max()
     assert longest <= reach + 1e-9
