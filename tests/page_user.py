@@ -14,6 +14,12 @@ RESIZED = """(width) => new Promise((go) => {
   const look = () => requestAnimationFrame(innerWidth === width ? () => go() : look);
   look();
 })"""
+IS_WHOLE = """(name) => {
+  const element = document.getElementById(name);
+  const { left, right, top, bottom, width } = element.getBoundingClientRect();
+  return width > 0 && left >= 0 && right <= innerWidth && top >= 0 && bottom <= innerHeight &&
+    element.scrollWidth <= element.clientWidth + 1;
+}"""
 DRAWN_PLACES = """([name, attribute, size]) => {
   let numbers = [];
   window.__viserMutable?.nodeRefFromName[name]?.traverse((node) => {
@@ -61,6 +67,10 @@ class PageUser:
         if box.is_checked() != on:
             box.dispatch_event("click")
         self.wait_until(lambda: box.is_checked() == on, f"{label} is {on}")
+
+    def is_whole(self, name: str) -> bool:
+        """Return whether an element, by its id, is in the window with all of its text."""
+        return self.page.evaluate(IS_WHOLE, name)
 
     def contacts(self) -> list[list[float]]:
         """Return the points of contacts that are drawn, each x, y and z in m."""

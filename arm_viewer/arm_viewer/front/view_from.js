@@ -9,6 +9,7 @@ own messages would, and the rest of the page does not see it. */
   let topic = "";
   let pose = null;
   let before = null;
+  let sent = [];
   let placeTimer = 0;
 
   const sign = () => document.getElementById("arm-view-from");
@@ -26,13 +27,24 @@ own messages would, and the rest of the page does not see it. */
   function show() {
     const viser = client();
     if (!viser || !pose) return;
-    viser.messageQueue.push(
+    drop(viser);
+    sent = [
       { type: "SetCameraPositionMessage", position: pose.position, initial: false },
       { type: "SetCameraLookAtMessage", look_at: pose.target, initial: false },
       { type: "SetCameraUpDirectionMessage", position: pose.up, initial: false },
       { type: "SetCameraFovMessage", fov: fov(viser.camera), initial: false },
-    );
+    ];
+    viser.messageQueue.push(...sent);
     viser.requestRender();
+  }
+
+  /* Takes back what viser's client has not read yet, which it does once a frame. */
+  function drop({ messageQueue }) {
+    for (const message of sent) {
+      const place = messageQueue.indexOf(message);
+      if (place >= 0) messageQueue.splice(place, 1);
+    }
+    sent = [];
   }
 
   function keep() {
@@ -67,6 +79,7 @@ own messages would, and the rest of the page does not see it. */
     armChannel.send("view_from", { topic });
     const viser = client();
     if (!viser) return;
+    drop(viser);
     const { cameraControl, camera } = viser;
     camera.up.copy(before.up);
     camera.fov = before.fov;

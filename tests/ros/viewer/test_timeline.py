@@ -123,18 +123,6 @@ class Timeline(PageUser):
         self.click("Recordings")
         self.click(f"Open {name}")
 
-    def is_whole(self, name):
-        """Return whether an element is within the window, and all of its text within it."""
-        return self.page.evaluate(
-            """(name) => {
-              const element = document.getElementById(name);
-              const { left, right, top, bottom } = element.getBoundingClientRect();
-              return left >= 0 && right <= innerWidth && top >= 0 && bottom <= innerHeight &&
-                element.scrollWidth <= element.clientWidth + 1;
-            }""",
-            name,
-        )
-
     def until_near(self, read, wanted, tolerance):
         assert self.wait_until(lambda: abs(read() - wanted) < tolerance, f"near {wanted}")
 
