@@ -45,6 +45,17 @@ def test_things_fall_under_the_gravity_that_is_set(sim: Simulation):
     assert fall_m(sim, 0.9) == 0.0
 
 
+def test_joints_that_are_too_weak_for_the_gravity_are_logged_once(sim: Simulation, caplog):
+    sim.set_gravity((0.0, 0.0, -100.0))
+    weak = [r.message for r in caplog.records if "effort limit" in r.message]
+    assert [message.split(":")[0] for message in weak] == ["joint 'j1'", "joint 'j2'"]
+    assert all("that gravity needs in some poses; it will sink there" in w for w in weak)
+    caplog.clear()
+    sim.set_gravity((0.0, 0.0, -100.0))
+    sim.set_gravity(MOON)
+    assert not [r for r in caplog.records if "effort limit" in r.message]
+
+
 def test_a_resting_thing_wakes_when_gravity_turns(sim: Simulation):
     sim.spawn(BOX, pose=(0.7, 0.3, 0.05))
     sim.run(5.0)

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_gazebo.drives.servo_tuning import weak_drives
+from arm_gazebo.drives.servo_tuning import ServoTuning, weak_drives
 from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.world_properties import Gravity, PropertyChanges, bodies_of, shapes_of
@@ -126,13 +126,16 @@ class PropertyEditor:
         The drives plan and hold under another gravity. A drive that is too weak for it is logged.
         """
         physics, tuning = self._physics, None
+        known = self._weak_drives(physics.servo.tuning)
         if changes.gravity != self.changes.gravity:
             tuning = physics.tuning_for(changes)
         self._editor.on_loop(lambda: physics.set_properties(changes, tuning))
         self._editor.announce()
-        if tuning is not None:
-            for name, problem in weak_drives(self._editor.model, physics.servo.joints, tuning):
-                logger.warning("joint '%s': %s", name, problem)
+        for name, problem in sorted(self._weak_drives(physics.servo.tuning) - known):
+            logger.warning("joint '%s': %s", name, problem)
+
+    def _weak_drives(self, tuning: ServoTuning) -> set[tuple[str, str]]:
+        return set(weak_drives(self._editor.model, self._physics.servo.joints, tuning))
 
     def _root(self, name: str) -> str:
         """Return the top-level body of an entity that is not a robot."""
