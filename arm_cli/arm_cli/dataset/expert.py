@@ -2,9 +2,11 @@
 
 import argparse
 import os
-from collections.abc import Iterator
+import signal
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 from typing import TYPE_CHECKING
 
 from arm_cli.arguments import Argument, Group, positive_whole_number, whole_number
@@ -19,6 +21,7 @@ OF_EXPERTS = ("seed", "workers", "ray")
 """The options that a recording of a running robot does not have."""
 OF_RECORDINGS = ("duration", "state", "action", "cameras", "fps")
 """The options that an expert does not have."""
+ENDING = b"ends after this episode with those so far; Ctrl-C again discards all of them\n"
 
 EXPERT = Group(
     "experts",
@@ -66,7 +69,7 @@ def show(options: argparse.Namespace, output: Path) -> None:
     try:
         from arm_sim.demonstrations import record_demonstrations
 
-        with _workers(options) as (start, workers):
+        with _ctrl_c() as was_pressed, _workers(options) as (start, workers):
             recorded = record_demonstrations(
                 output,
                 options.episodes,
@@ -75,6 +78,7 @@ def show(options: argparse.Namespace, output: Path) -> None:
                 # One more than there are workers, so that none waits for the writing.
                 ahead=workers + 1,
                 say=complain,
+                enough=was_pressed,
                 **{name: text for name, text in words.items() if text is not None},
             )
     except (ArmSimError, OSError) as error:
@@ -87,6 +91,28 @@ def show(options: argparse.Namespace, output: Path) -> None:
         tried = recorded.episodes + len(recorded.failures)
         seeds = ", ".join(map(str, recorded.failures))
         say(f"the expert failed in {len(recorded.failures)} of {tried}, left out: seeds {seeds}")
+
+
+@contextmanager
+def _ctrl_c() -> Iterator[Callable[[], bool]]:
+    """Give whether Ctrl-C was pressed; pressed again, it interrupts at once."""
+    pressed = False
+
+    def note(number: int, frame: FrameType | None) -> None:
+        nonlocal pressed
+        if pressed:
+            signal.default_int_handler(number, frame)
+        pressed = True
+        # Not by `print`, which this may have interrupted.
+        os.write(2, ENDING)
+
+    before = signal.getsignal(signal.SIGINT)
+    if before is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, note)
+    try:
+        yield lambda: pressed
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @contextmanager

@@ -82,6 +82,7 @@ def record_demonstrations(
     task: str = TASK,
     robot: str = ROBOT,
     say: Callable[[str], None] = lambda sentence: None,
+    enough: Callable[[], bool] = lambda: False,
 ) -> RecordedDemonstrations:
     """Write the first episodes in which the expert succeeds, in the order of their seeds.
 
@@ -96,6 +97,7 @@ def record_demonstrations(
         task: what the demonstrations show, as a sentence.
         robot: name of the robot.
         say: gets a sentence for each episode.
+        enough: whether to end with the episodes so far; asked after each one.
 
     Raises:
         DemonstrationError: the expert fails too often, or a worker has ended.
@@ -106,7 +108,7 @@ def record_demonstrations(
     seeds = count(seed)
     began_s, made_s, written = time.process_time(), 0.0, 0
     with DatasetWriter(output, robot) as writer:
-        while written < episodes:
+        while written < episodes and not (written and enough()):
             while len(started) < min(ahead, episodes - written):
                 started.append(start(next(seeds)))
             shown = _result(started.popleft())
@@ -125,7 +127,7 @@ def record_demonstrations(
     if faults := check_dataset(output):
         raise DemonstrationError(f"{output} was written, but {faults[0]}")
     spent_s = made_s + time.process_time() - began_s
-    return RecordedDemonstrations(episodes, failures, spent_s / episodes)
+    return RecordedDemonstrations(written, failures, spent_s / written)
 
 
 def _check_failures(failures: dict[int, str], episodes: int) -> None:

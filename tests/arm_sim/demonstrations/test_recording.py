@@ -116,6 +116,28 @@ def test_failures_are_left_out_and_counted(tmp_path: Path):
     assert [one["source"]["seed"] for one in told["episodes"]] == [7, 9]
 
 
+def test_it_ends_early_with_the_episodes_so_far(tmp_path: Path):
+    said: list[str] = []
+
+    def has_said_three() -> bool:
+        return len(said) == 3
+
+    def fails_first(seed: int) -> "Future[Demonstration]":
+        return done(empty(seed, "" if seed else "no plan: too far"))
+
+    recorded = record_demonstrations(
+        tmp_path / "data", 9, fails_first, say=said.append, enough=has_said_three
+    )
+    assert said == [
+        "seed 0: left out, no plan: too far",
+        "seed 1: episode 1 of 9",
+        "seed 2: episode 2 of 9",
+    ]
+    assert recorded.episodes == 2
+    assert recorded.processor_s >= 0.75
+    assert len(json.loads((tmp_path / "data/meta/arm_suite.json").read_text())["episodes"]) == 2
+
+
 def test_an_expert_that_always_fails_ends(tmp_path: Path):
     with pytest.raises(DemonstrationError, match=r"failed in 11 episodes.*of seed 10: no plan"):
         record_demonstrations(tmp_path / "data", 2, lambda seed: done(empty(seed, "no plan")))
