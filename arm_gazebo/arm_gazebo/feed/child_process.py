@@ -28,10 +28,19 @@ def follow_parent(parent: int) -> None:
     Raises:
         OrphanError: the simulation has already ended.
     """
+    end_with_parent(parent)
+    lower_priority()
+
+
+def end_with_parent(parent: int) -> None:
+    """End this process with the thread that started it, even if that is killed.
+
+    Raises:
+        OrphanError: the parent has already ended.
+    """
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
     if os.getppid() != parent:
-        raise OrphanError("the simulation that started this process has ended")
-    lower_priority()
+        raise OrphanError("the process that started this one has ended")
 
 
 def lower_priority() -> None:

@@ -1,6 +1,7 @@
 """Records demonstrations: workers make them, one process writes them in the order of seeds."""
 
 import multiprocessing
+import os
 import signal
 import time
 from collections import deque
@@ -15,6 +16,7 @@ from pathlib import Path
 from typing import Protocol
 
 from arm_gazebo.errors import GazeboError
+from arm_gazebo.feed.child_process import end_with_parent
 from arm_sim.dataset import DatasetWriter, align, check_dataset
 from arm_sim.demonstrations.pick import ROBOT, TASK, Demonstration, PickDemonstrator
 from arm_sim.errors import ArmSimError
@@ -153,13 +155,14 @@ def worker_processes(number: int) -> Iterator[Making]:
     """Give what starts demonstrations in processes, which end with the context."""
     # Spawned: a forked process would share what OpenGL and threads have begun.
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(number, context, initializer=_leave_signals)
+    pool = ProcessPoolExecutor(number, context, initializer=_begin, initargs=(os.getpid(),))
     try:
         yield lambda seed: pool.submit(make_demonstration, seed)
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _leave_signals() -> None:
-    # Ctrl-C is for the process that writes; it ends this one.
+def _begin(parent: int) -> None:
+    """Leave Ctrl-C to the process that writes, and end with it, however it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    end_with_parent(parent)
