@@ -6,7 +6,6 @@ from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 
-import av
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
@@ -41,11 +40,6 @@ def files_of(folder: Path) -> dict[str, bytes]:
     }
 
 
-def pictures(path: Path) -> np.ndarray:
-    with av.open(str(path)) as video:
-        return np.array([frame.to_ndarray(format="rgb24") for frame in video.decode(video=0)])
-
-
 @pytest.mark.gl
 def test_equal_seeds_give_equal_files(short: PickDemonstrator, tmp_path: Path):
     def start(seed: int) -> "Future[Demonstration]":
@@ -54,13 +48,7 @@ def test_equal_seeds_give_equal_files(short: PickDemonstrator, tmp_path: Path):
     for name in ("one", "two"):
         record_demonstrations(tmp_path / name, 2, start, seed=5)
     one, two = (files_of(tmp_path / name) for name in ("one", "two"))
-    videos = [name for name in one if name.endswith(".mp4")]
-    assert len(videos) == 2
-    for name in videos:
-        # One in some 280 repetitions has a video that differs, drawn in software; why is not known.
-        drawn, again = (pictures(tmp_path / folder / name) for folder in ("one", "two"))
-        assert np.abs(drawn.astype(float) - again).mean() < 1.0
-        del one[name], two[name]
+    assert sum(name.endswith(".mp4") for name in one) == 2
     assert one == two
     rows = pq.read_table(tmp_path / "one/data/chunk-000/file-000.parquet")
     states = np.array(rows["observation.state"].to_pylist())
