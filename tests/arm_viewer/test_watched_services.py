@@ -6,6 +6,7 @@ from arm_viewer.ros import controller_observer, property_observer, run_observer,
 from arm_viewer.ros.controller_observer import ControllerObserver
 from arm_viewer.ros.run_observer import RunObserver
 from arm_viewer.ros.world_client import WorldClient
+from arm_viewer.world_requests import LookAtThing
 
 LIST = "/controller_manager/list_controllers"
 
@@ -13,8 +14,10 @@ LIST = "/controller_manager/list_controllers"
 class Node:
     """A graph with a simulation and a controller manager."""
 
+    services = 1
+
     def count_services(self, name):
-        return 1
+        return self.services
 
     def get_service_names_and_types(self):
         return [(LIST, [controller_observer.SERVICE_TYPE])]
@@ -33,6 +36,9 @@ def asked(monkeypatch):
             asked.append(self._service)
             return True
 
+        def close(self):
+            pass
+
     for module in (controller_observer, property_observer, run_observer, world_client):
         monkeypatch.setattr(module, "ServiceCaller", Caller)
     return asked
@@ -49,6 +55,20 @@ def test_the_simulation_is_asked_only_while_somebody_watches(asked, observer_cla
     observer.discover({})
     observer.collect(2.0)
     assert asked
+
+
+def test_a_thing_is_not_looked_at_any_more_when_the_simulation_has_gone(asked):
+    node = Node()
+    client = WorldClient(node, lambda: True)
+    client.discover({})
+    client.serve(LookAtThing("crate"))
+    client.collect(1.0)
+    assert "/get_entity_state" in asked
+    asked.clear()
+    node.services = 0
+    client.discover({})
+    client.collect(2.0)
+    assert (client.view, asked) == (None, [])
 
 
 def test_controllers_are_known_before_somebody_watches(asked):

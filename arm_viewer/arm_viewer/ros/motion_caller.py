@@ -113,6 +113,10 @@ class MotionCaller:
         self._execute.cancel()
         self._event.publish(String(data=STOP))
 
+    def refuse(self, sentence: str) -> None:
+        """Say why nothing is planned."""
+        self._say(sentence, failed=True)
+
     def drop_plan(self) -> None:
         """Forget the plan: it leads to another goal."""
         if not self._is_busy():

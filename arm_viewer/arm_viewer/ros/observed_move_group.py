@@ -64,6 +64,7 @@ class ObservedMoveGroup:
         self._checker = GoalChecker(node, namespace, self._take_checked)
         self._scene = PlanningSceneClient(node, polled, namespace, model)
         self._solver = TipSolver(node, namespace, self._seed, self._take_solved)
+        self._planned: PlanMotion | None = None
 
     def serve(self, request: PlanningRequest) -> None:
         """Do what the user wants."""
@@ -75,11 +76,15 @@ class ObservedMoveGroup:
             case JogTip():
                 if self._jogger is not None:
                     self._jogger.jog(request)
+            case PlanMotion() if self._solver.is_busy:
+                # It is meant for the pose that was set before, whose goal is still sought.
+                self._planned = request
             case PlanMotion():
                 self._motions.start(self.view.goal, request)
             case ExecutePlan():
                 self._motions.execute()
             case StopMotion():
+                self._planned = None
                 self._motions.stop()
             case AddObject():
                 self._scene.add(request.object)
@@ -155,11 +160,18 @@ class ObservedMoveGroup:
     def _take_solved(self, asked: TipPose, found: JointPositions | None, problem: str) -> None:
         if found is not None:
             self._set_goal(asked.group, found)
+        else:
+            goal = self.view.goal
+            if goal is None or goal.group != asked.group:
+                goal = GoalState(asked.group, self._seed(asked.group))
+            self._keep(replace(goal, problem=problem))
+        if self._planned is None or self._solver.is_busy:
             return
-        goal = self.view.goal
-        if goal is None or goal.group != asked.group:
-            goal = GoalState(asked.group, self._seed(asked.group))
-        self._keep(replace(goal, problem=problem))
+        planned, self._planned = self._planned, None
+        if found is not None:
+            self._motions.start(self.view.goal, planned)
+        else:
+            self._motions.refuse(f"Nothing was planned. {problem}")
 
     def _take_checked(self, checked: GoalState) -> None:
         goal = self.view.goal

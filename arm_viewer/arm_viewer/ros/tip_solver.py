@@ -61,6 +61,11 @@ class TipSolver:
         self._waiting: TipPose | None = None
         self._asked: TipPose | None = None
 
+    @property
+    def is_busy(self) -> bool:
+        """Whether a pose is still sought."""
+        return self._waiting is not None or self._asked is not None
+
     def solve(self, wanted: TipPose) -> None:
         """Solve a pose as soon as the one before is answered; the latest one wins."""
         self._waiting = wanted

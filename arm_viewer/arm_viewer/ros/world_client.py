@@ -153,7 +153,7 @@ class WorldClient:
                 self._say(f"{wish.service} did not answer within {ANSWER_S:g} s", False)
             if caller.ask(wish.question, lambda answer, wish=wish: self._end(wish, answer)):
                 self._wishes.remove(wish)
-        if self._followed and now_s - self._followed_s > FOLLOW_S:
+        if self._followed and self._callers and now_s - self._followed_s > FOLLOW_S:
             self._followed_s = now_s
             name = self._followed
             self._ask("/get_entity_state", lambda a: self._take_state(name, a), entity=name)

@@ -25,6 +25,7 @@ class FakeMoveGroup:
         self._node = node
         self._name = name
         self._services = []
+        self.goals = []
         for topic, text in (("robot_description", URDF), ("robot_description_semantic", SRDF)):
             publisher = node.create_publisher(String, f"{name}/{topic}", latched)
             publisher.publish(String(data=text))
@@ -33,18 +34,18 @@ class FakeMoveGroup:
         self._services.append(self._node.create_service(kind, f"{self._name}/{name}", answer))
 
     def serve_action(self, action, name, answer) -> None:
-        self.serve(action.Impl.SendGoalService, f"{name}/_action/send_goal", accept)
+        self.serve(action.Impl.SendGoalService, f"{name}/_action/send_goal", self._accept)
         self.serve(action.Impl.GetResultService, f"{name}/_action/get_result", answer)
+
+    def _accept(self, request, answer):
+        self.goals.append(request.goal)
+        answer.accepted = True
+        return answer
 
     def end(self) -> None:
         for service in self._services:
             self._node.destroy_service(service)
         self._services.clear()
-
-
-def accept(_, answer):
-    answer.accepted = True
-    return answer
 
 
 def refuse_plan(_, answer):
@@ -182,6 +183,25 @@ def test_the_goal_follows_the_tip_and_stays_where_it_cannot(move_group, ask):
     assert goal.positions == {"turn": 0.25}
     goal = ask(high, lambda view: not view.goal.problem and view.goal)
     assert goal.positions == {"turn": 0.25}
+
+
+def test_a_plan_leads_to_the_pose_that_was_set_right_before_it(move_group, viewer, ask):
+    from arm_node.rigid_transform import RigidTransform
+    from arm_viewer.planning_requests import DragTip
+
+    ask(chosen(), lambda view: view.goal and view.goal.positions["turn"] == 0.5)
+    move_group.goals.clear()
+    viewer.node.send(DragTip(NAME, "all", RigidTransform((0.0, 0.0, 0.75))))
+    viewer.node.send(planned())
+    viewer.until(lambda: move_group.goals)
+    (wanted,) = move_group.goals[0].request.goal_constraints
+    assert [joint.position for joint in wanted.joint_constraints] == [0.75]
+    viewer.seen(lambda s: "GOAL_IN_COLLISION" in s.planning[NAME].said)
+    viewer.node.send(DragTip(NAME, "all", RigidTransform((0.0, 0.0, -0.75))))
+    view = ask(planned(), lambda view: view.said.startswith("Nothing was planned") and view)
+    assert view.said.endswith("The tip cannot be there: the pose is below the ground")
+    assert len(move_group.goals) == 1, "nothing was asked for"
+    ask(chosen(), lambda view: not view.said)
 
 
 def test_the_robot_follows_poses_of_its_tip_while_a_servo_node_runs(

@@ -327,6 +327,7 @@ def test_the_page_records_a_bag_that_it_opens(timeline, folder):
     page.locator("#arm-topics").fill("/rosout")
     timeline.click("Record")
     timeline.wait_until(lambda: "nothing dropped" in timeline.text("arm-recorder"), "it records")
+    assert not page.locator("#arm-run-button").is_visible(), "one recording at a time"
     timeline.click("Stop")
     timeline.wait_until(lambda: "messages of" in timeline.text("arm-recorder"), "it has stopped")
     made = [path for path in folder.iterdir() if path.name.startswith("recording_")]
