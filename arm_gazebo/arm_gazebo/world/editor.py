@@ -169,7 +169,8 @@ class WorldEditor:
 
     def motions(self) -> EntityMotions:
         """Return the present poses and velocities of all entities."""
-        self._motions.take(self.on_loop(self._simulation.state))
+        # Between two ticks: while it steps, the running model hides some of its shapes.
+        self.on_loop(lambda: self._motions.take(self._simulation.state()))
         return self._motions
 
     def spawn(self, request: SpawnRequest) -> str:

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from arm_gazebo.errors import Refusal, RequestError
+from arm_gazebo.physics.stepped_shapes import SteppedShapes
 from arm_gazebo.world.editor import SpawnRequest
 from arm_gazebo.world.entity import Category, EntityNote
 
@@ -34,6 +35,28 @@ def test_a_spawned_model_starts_at_its_pose_and_falls(world, things, text):
     assert world.where("thing") == pytest.approx([2, 1, 1], abs=1e-9)
     world.arm.run(0.2)
     assert world.where("thing")[2] == pytest.approx(1 - 0.5 * 9.81 * 0.04, abs=0.02)
+
+
+def test_drawn_shapes_are_where_their_things_are_while_a_step_runs(world, things):
+    model = world.arm.simulation.model
+    stepped = SteppedShapes(model)
+
+    def between_two_ticks(function):
+        stepped.show()
+        result = function()
+        stepped.hide()
+        return result
+
+    world.editor.on_loop = between_two_ticks
+    stepped.hide()
+    world.editor.place("red_cylinder", things.at(1, 1, 0.175), "", None)
+    positions, _ = world.editor.motions().geom_poses
+    stepped.show()
+
+    body = model.body("red_cylinder")
+    touching, drawn = range(body.geomadr[0], body.geomadr[0] + body.geomnum[0])
+    assert not model.geom_contype[drawn]
+    assert positions[[touching, drawn]] == pytest.approx(np.tile([1, 1, 0.175], (2, 1)))
 
 
 def test_a_static_model_stays_at_its_pose(world, things):
