@@ -17,8 +17,9 @@ class Tree:
 
     def __init__(self, roots: Array) -> None:
         count, joints = roots.shape
-        self._states = np.empty((max(FIRST_ROOM, 2 * count), joints))
-        self._states[:count] = roots
+        # A row for each joint: the search for the nearest state then adds long rows.
+        self._states = np.empty((joints, max(FIRST_ROOM, 2 * count)))
+        self._states[:, :count] = roots.T
         self._parents = [-1] * count
 
     def __len__(self) -> int:
@@ -27,20 +28,21 @@ class Tree:
     def add(self, state: Array, parent: int) -> int:
         """Add a state, (n,), that was reached from another; return its index."""
         index = len(self._parents)
-        if index == len(self._states):
-            self._states = np.concatenate([self._states, np.empty_like(self._states)])
-        self._states[index] = state
+        if index == self._states.shape[1]:
+            self._states = np.hstack([self._states, np.empty_like(self._states)])
+        self._states[:, index] = state
         self._parents.append(parent)
         return index
 
     def state(self, index: int) -> Array:
         """Return a state, (n,)."""
-        return self._states[index].copy()
+        return self._states[:, index].copy()
 
     def nearest(self, state: Array) -> int:
         """Return the index of the state with the smallest Euclidean distance."""
-        difference = self._states[: len(self._parents)] - state
-        return int(np.einsum("ij,ij->i", difference, difference).argmin())
+        squares = self._states[:, : len(self._parents)] - state[:, None]
+        np.multiply(squares, squares, out=squares)
+        return int(squares.sum(axis=0).argmin())
 
     def path(self, index: int) -> Array:
         """Return the states from a root to one, (m, n)."""
@@ -48,4 +50,4 @@ class Tree:
         while index >= 0:
             indices.append(index)
             index = self._parents[index]
-        return self._states[indices[::-1]]
+        return self._states.T[indices[::-1]]
