@@ -1,4 +1,4 @@
-"""What broken files cost: ten thousand for each reader, in processes that may die of them."""
+"""What broken files and requests cost: ten thousand of each, in processes that may die of them."""
 
 import argparse
 import json
@@ -9,7 +9,10 @@ from pathlib import Path
 import harness
 
 FUZZ = Path(__file__).parents[1] / "tests" / "fuzz" / "fuzz.py"
-TARGETS = ("urdf", "xacro", "sdf", "mjcf", "meshes", "yaml", "mcap", "arguments")
+TARGETS = (
+    *("urdf", "xacro", "srdf", "sdf", "mjcf", "meshes", "yaml", "mcap", "arguments"),
+    *("planning", "requests"),
+)
 
 
 def row(target: str, inputs: int) -> harness.Row:

@@ -76,16 +76,71 @@ def client(node, kind, name):
     return made
 
 
-def answers(count: int) -> dict[str, np.ndarray]:
-    """Return the seconds of each answer, by what was asked for."""
-    import rclpy
+class Asker:
+    """Asks the nodes in turn, and notes how long each answer takes."""
+
+    def __init__(self, node, executor) -> None:
+        from moveit_msgs.action import MoveGroup
+        from moveit_msgs.srv import GetMotionPlan, GetStateValidity
+        from rcl_interfaces.srv import GetParameters
+        from rclpy.action.client import ActionClient
+
+        self._executor = executor
+        self._services = {
+            "plan_kinematic_path": client(node, GetMotionPlan, "/plan_kinematic_path"),
+            "check_state_validity": client(node, GetStateValidity, "/check_state_validity"),
+            SAME: client(node, GetStateValidity, PLAIN),
+            "rclpy's get_parameters": client(node, GetParameters, "/move_group/get_parameters"),
+        }
+        self._action = ActionClient(node, MoveGroup, "/move_action")
+        self._action.wait_for_server(10)
+        self.times = {name: [] for name in TARGETS}
+
+    def call(self, name: str, request):
+        return self._timed(name, lambda: wait(self._services[name].call_async(request)))
+
+    def act(self, goal):
+        async def act():
+            return await (await self._action.send_goal_async(goal)).get_result_async()
+
+        # An action's client may lose an answer that another thread reads before it is noted.
+        return self._timed("move_action, plan only", lambda: wait(self._executor.create_task(act)))
+
+    def _timed(self, name: str, ask):
+        start = time.perf_counter()
+        answer = ask()
+        self.times[name].append(time.perf_counter() - start)
+        return answer
+
+
+def ask_in_turn(asker: Asker, count: int) -> None:
     from moveit_msgs.action import MoveGroup
     from moveit_msgs.srv import GetMotionPlan, GetStateValidity
     from rcl_interfaces.srv import GetParameters
-    from rclpy.action.client import ActionClient
-    from rclpy.executors import SingleThreadedExecutor
 
     from arm_planning.ros.goal_messages import joint_goal, plan_message
+
+    random = np.random.default_rng(0)
+    for _ in range(count):
+        goal = joint_goal(dict(zip(JOINTS, random.uniform(-0.4, 0.4, 3).tolist(), strict=True)))
+        message = plan_message("arm", goal, allowed_planning_time=5.0, num_planning_attempts=1)
+        message.max_velocity_scaling_factor = message.max_acceleration_scaling_factor = 1.0
+        request = GetMotionPlan.Request(motion_plan_request=message)
+        answer = asker.call("plan_kinematic_path", request)
+        assert answer.motion_plan_response.error_code.val == 1
+        only = MoveGroup.Goal(request=message)
+        only.planning_options.plan_only = True
+        only.planning_options.planning_scene_diff.is_diff = True
+        assert asker.act(only).result.error_code.val == 1
+        for name in ("check_state_validity", SAME):
+            asker.call(name, GetStateValidity.Request(group_name="arm"))
+        asker.call("rclpy's get_parameters", GetParameters.Request(names=["use_sim_time"]))
+
+
+def answers(count: int) -> dict[str, np.ndarray]:
+    """Return the seconds of each answer, by what was asked for."""
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
 
     rclpy.init()
     node = rclpy.create_node("measuring")
@@ -93,50 +148,13 @@ def answers(count: int) -> dict[str, np.ndarray]:
     executor.add_node(node)
     spinning = threading.Thread(target=executor.spin)
     spinning.start()
-
-    plan = client(node, GetMotionPlan, "/plan_kinematic_path")
-    validity = client(node, GetStateValidity, "/check_state_validity")
-    plain = client(node, GetStateValidity, PLAIN)
-    parameters = client(node, GetParameters, "/move_group/get_parameters")
-    action = ActionClient(node, MoveGroup, "/move_action")
-    action.wait_for_server(10)
-    random = np.random.default_rng(0)
-    times = {name: [] for name in TARGETS}
-
-    def timed(name, ask):
-        start = time.perf_counter()
-        answer = ask()
-        times[name].append(time.perf_counter() - start)
-        return answer
-
-    for _ in range(count):
-        goal = joint_goal(dict(zip(JOINTS, random.uniform(-0.4, 0.4, 3).tolist(), strict=True)))
-        message = plan_message("arm", goal, allowed_planning_time=5.0, num_planning_attempts=1)
-        message.max_velocity_scaling_factor = message.max_acceleration_scaling_factor = 1.0
-        request = GetMotionPlan.Request(motion_plan_request=message)
-        answer = timed("plan_kinematic_path", lambda r=request: wait(plan.call_async(r)))
-        assert answer.motion_plan_response.error_code.val == 1
-        only = MoveGroup.Goal(request=message)
-        only.planning_options.plan_only = True
-        only.planning_options.planning_scene_diff.is_diff = True
-
-        async def act(goal=only):
-            return await (await action.send_goal_async(goal)).get_result_async()
-
-        # An action's client may lose an answer that another thread reads before it is noted.
-        acted = timed("move_action, plan only", lambda act=act: wait(executor.create_task(act)))
-        assert acted.result.error_code.val == 1
-        asked = GetStateValidity.Request(group_name="arm")
-        timed("check_state_validity", lambda r=asked: wait(validity.call_async(r)))
-        asked = GetStateValidity.Request(group_name="arm")
-        timed(SAME, lambda r=asked: wait(plain.call_async(r)))
-        names = GetParameters.Request(names=["use_sim_time"])
-        timed("rclpy's get_parameters", lambda r=names: wait(parameters.call_async(r)))
+    asker = Asker(node, executor)
+    ask_in_turn(asker, count)
     executor.shutdown()
     spinning.join()
     node.destroy_node()
     rclpy.shutdown()
-    return {name: np.array(values) for name, values in times.items()}
+    return {name: np.array(values) for name, values in asker.times.items()}
 
 
 def main() -> None:

@@ -1,6 +1,7 @@
 """The limits of joints: those of the URDF, replaced one by one by those of joint_limits.yaml."""
 
 import math
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 
@@ -202,7 +203,9 @@ def _fraction(name: str, value: object) -> float:
 
 
 def _number(name: str, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    # YAML's integers have no bounds, and one above a float's cannot be asked whether it is finite.
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not is_number or not abs(value) <= sys.float_info.max:
         raise _refusal(f"{name} is {value!r}, which is not a finite number")
     return float(value)
 

@@ -37,6 +37,7 @@ def test_a_group_that_does_not_exist_is_named():
         ("kinematics_solver_timeout", "long"),
         ("kinematics_solver_timeout", -1.0),
         ("kinematics_solver_timeout", float("nan")),
+        ("kinematics_solver_timeout", 10**400),
         ("kinematics_solver_timeout", True),
     ],
 )

@@ -13,6 +13,7 @@ from arm_planning.robot.limits import (
 )
 from arm_planning.robot.model import PlanningLimits
 
+HUGE = 10**400
 SAFETY = "<safety_controller soft_lower_limit='-1' soft_upper_limit='9' k_velocity='1'/>"
 
 
@@ -100,6 +101,7 @@ def test_an_unknown_key_is_a_warning():
     [
         ("max_velocity: fast", "max_velocity is 'fast', which is not a finite number"),
         ("max_velocity: .nan", "max_velocity is nan, which is not a finite number"),
+        (f"max_position: {HUGE}", f"max_position is {HUGE}, which is not a finite number"),
         ("max_acceleration: 0", "max_acceleration is 0; a limit is above 0"),
         ("has_jerk_limits: 1", "has_jerk_limits is 1; it is true or false"),
     ],

@@ -1,5 +1,6 @@
 """The limits of the tip's motion: those of pilz_cartesian_limits.yaml."""
 
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
@@ -51,10 +52,11 @@ def cartesian_limits(values: Mapping[str, object]) -> CartesianLimits:
             raise _refusal(f"no limit '{name}'; {describe_known(key, known, 'there are')}")
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise _refusal(f"{name} is not a number: {value!r}")
-        sign = -1.0 if key == "max_trans_dec" else 1.0
-        if not 0.0 < sign * value < float("inf"):
-            kind = "negative" if sign < 0.0 else "positive"
-            raise _refusal(f"{name} is {value:g}; it must be {kind} and finite")
+        is_negative = key == "max_trans_dec"
+        # YAML's integers have no bounds.
+        if not 0.0 < (-value if is_negative else value) <= sys.float_info.max:
+            kind = "negative" if is_negative else "positive"
+            raise _refusal(f"{name} is {value!r}; it must be {kind} and finite")
         given[key] = float(value)
     return CartesianLimits(**given)
 

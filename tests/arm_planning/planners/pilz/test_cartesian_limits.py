@@ -18,6 +18,7 @@ def test_other_parameters_are_passed_over():
     ("key", "value", "sentence"),
     [
         ("max_trans_vel", 0.0, "must be positive"),
+        ("max_trans_vel", 10**400, "must be positive and finite"),
         ("max_trans_dec", 5.0, "must be negative"),
         ("max_rot_vel", float("nan"), "must be positive"),
         ("max_rot_vel", "fast", "is not a number: 'fast'"),
