@@ -61,9 +61,12 @@ def kinematics_settings(
 
 def _seconds(values: Mapping[str, object], name: str) -> float:
     value = values.get(name, 0.0)
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
     # YAML's integers have no bounds.
-    if not is_number or not 0.0 <= value <= sys.float_info.max:
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, int | float)
+        or not 0.0 <= value <= sys.float_info.max
+    ):
         raise _refusal(f"robot_description_kinematics.{name} is {value!r}; it is a time in s")
     return float(value)
 

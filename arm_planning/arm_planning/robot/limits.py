@@ -203,9 +203,10 @@ def _fraction(name: str, value: object) -> float:
 
 
 def _number(name: str, value: object) -> float:
-    # YAML's integers have no bounds, and one above a float's cannot be asked whether it is finite.
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_number or not abs(value) <= sys.float_info.max:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise _refusal(f"{name} is {value!r}, which is not a finite number")
+    # YAML's integers have no bounds, and `isfinite` raises an error above a float's.
+    if not abs(value) <= sys.float_info.max:
         raise _refusal(f"{name} is {value!r}, which is not a finite number")
     return float(value)
 
