@@ -31,9 +31,9 @@ SOFTWARE_GL = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader")
 
 
 @contextlib.contextmanager
-def running(*words: str) -> Iterator[None]:
-    """Run `arm WORDS` for a while."""
-    process = subprocess.Popen([sys.executable, "-m", "arm_cli", *words])
+def running(*words: str, folder: str | None = None) -> Iterator[None]:
+    """Run `arm WORDS` for a while, in this folder."""
+    process = subprocess.Popen([sys.executable, "-m", "arm_cli", *words], cwd=folder)
     try:
         yield
     finally:
