@@ -103,6 +103,7 @@ class RunCheck:
         """
         self.verdict = RunVerdict(path.name)
         self.part = EqualPart()
+        self._result: RunVerdict | None = None
         self._changed = changed
         self._folder = tempfile.TemporaryDirectory(
             prefix="arm_page_run_", ignore_cleanup_errors=True
@@ -172,20 +173,30 @@ class RunCheck:
         self._threads[1].join()
         if not self._is_wanted:
             return
-        if not self.verdict.is_over:
-            self.fail(" ".join(self._said) or "the process ended without a word")
         self.part = replace(self.part, grows=False)
         if code >= 0:
             # It has finished its last file.
             files = tuple(self._bag.glob("*.mcap"))
             self.part = EqualPart(files, self.verdict.compared_s, grows=False)
         self._changed(self)
+        # Only now, because whoever sees that it is over may go to its end at once.
+        if self.verdict.is_over:
+            return
+        if self._result is None:
+            self.fail(" ".join(self._said) or "the process ended without a word")
+        else:
+            self.verdict = self._result
 
     def _take(self, line: str) -> None:
         try:
             told = json.loads(line)
             if "result" in told:
-                self.verdict = _result(self.verdict.name, told["result"], self._said)
+                self._result = _result(self.verdict.name, told["result"], self._said)
+                self.verdict = replace(
+                    self.verdict,
+                    compared_s=self._result.compared_s,
+                    length_s=self._result.length_s,
+                )
             else:
                 self._take_progress(told)
         except (ValueError, KeyError, TypeError):

@@ -56,11 +56,19 @@ def checked(run_file):
         command = (sys.executable, "-c", script, *words)
         checks.append(RunCheck(run_file, take, command))
         assert over.wait(TIMEOUT_S)
+        wait_for(lambda: checks[-1].verdict.is_over)
         return checks[-1], parts
 
     yield check
     for check in checks:
         check.close()
+
+
+def wait_for(condition):
+    deadline_s = time.monotonic() + TIMEOUT_S
+    while not condition():
+        assert time.monotonic() < deadline_s
+        time.sleep(0.01)
 
 
 def lines(*told):
@@ -103,6 +111,16 @@ def test_what_is_equal_so_far_can_be_shown_file_by_file(checked):
     assert (last.until_s, check.verdict.length_s) == (1.0, 1.0)
 
 
+def test_it_is_over_when_all_of_it_is_shown(run_file):
+    seen = []
+    told = lines({"periods": 50, "file": "a_0.mcap", **LENGTHS}, {"result": EQUAL})
+    command = (sys.executable, "-c", SCRIPT, told)
+    check = RunCheck(run_file, lambda c: seen.append((c.part.grows, c.verdict.is_over)), command)
+    wait_for(lambda: check.verdict.is_over)
+    check.close()
+    assert seen == [(True, False), (False, False)]
+
+
 def test_a_difference_is_told_with_its_time(checked):
     check, (part,) = checked(SCRIPT, lines({"result": DIFFERENT}))
     assert not check.verdict.is_equal
@@ -116,11 +134,8 @@ def test_progress_is_told_until_then(run_file):
     script = "import sys, time; print(sys.argv[1], flush=True); time.sleep(600)"
     command = (sys.executable, "-c", script, lines({"periods": 50, **LENGTHS}))
     check = RunCheck(run_file, lambda *_: None, command)
-    deadline_s = time.monotonic() + TIMEOUT_S
     try:
-        while "equal so far: 0.50 of 1.00 s" not in check.verdict.text:
-            assert time.monotonic() < deadline_s
-            time.sleep(0.01)
+        wait_for(lambda: "equal so far: 0.50 of 1.00 s" in check.verdict.text)
         assert not check.verdict.is_equal, "the rest may differ"
     finally:
         said = check.close()
