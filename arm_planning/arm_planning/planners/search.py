@@ -19,6 +19,9 @@ Array = NDArray[np.float64]
 
 _logger = logging.getLogger(__name__)
 
+SAMPLED_ROUNDS = 3
+"""How often a path is searched for by samples before each move is proved: another search often
+takes another way, and proofs take several times as long."""
 RACE_FACTOR, RACE_EXTRA = 2, 32
 """After the first attempt found a path, the others may take so many iterations altogether."""
 
@@ -43,9 +46,11 @@ class RrtConnectPlanner:
         if path is not None:
             return path
         check_start_is_proved(problem)
-        paths = list(self._paths(problem, goals, is_proved=False))
-        # Where samples do not tell what is free, each move is proved.
-        paths = paths or list(self._paths(problem, goals, is_proved=True))
+        paths: list[Array] = []
+        for number in range(SAMPLED_ROUNDS + 1):
+            # Where samples do not tell what is free, each move is proved.
+            is_proved = number == SAMPLED_ROUNDS
+            paths = paths or list(self._paths(problem, goals, number, is_proved=is_proved))
         if not paths:
             raise PlanningError(
                 MoveItErrorCode.PLANNING_FAILED,
@@ -53,12 +58,14 @@ class RrtConnectPlanner:
             )
         return min(paths, key=path_length)
 
-    def _paths(self, problem: PlanningProblem, goals: Array, *, is_proved: bool) -> Iterator[Array]:
+    def _paths(
+        self, problem: PlanningProblem, goals: Array, number: int, *, is_proved: bool
+    ) -> Iterator[Array]:
         """Yield the path of each attempt that succeeds, shortened and proved."""
         space = space_of(problem, goals, is_proved=is_proved)
         has_path = False
         try:
-            for attempt, found in race(problem, space, goals, self.reach):
+            for attempt, found in race(problem, space, goals, self.reach, number):
                 path = shortened_and_proved(problem, space, found, attempt)
                 if path is not None:
                     has_path = True
@@ -122,9 +129,16 @@ def check_start_is_proved(problem: PlanningProblem) -> None:
 
 
 def race(
-    problem: PlanningProblem, space: Space, goals: Array, reach: float
+    problem: PlanningProblem, space: Space, goals: Array, reach: float, number: int
 ) -> Iterator[tuple[int, Array]]:
     """Search with several streams of random numbers in turn; yield each path that is found.
+
+    Args:
+        problem: what is searched for.
+        space: where.
+        goals: the states that paths may end in, (g, n).
+        reach: longest move of a tree, in the joints' units.
+        number: how often this was done before; each time has streams of its own.
 
     Yields:
         The number of the attempt and its path. An attempt that takes much longer than the first
@@ -135,7 +149,7 @@ def race(
     """
     searches = {
         attempt: rrt_connect(space, problem.start, goals, (problem.seed, attempt), reach)
-        for attempt in range(problem.attempts)
+        for attempt in range(number * problem.attempts, (number + 1) * problem.attempts)
     }
     iterations, last = 0, np.inf
     while searches and iterations < last:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from planar_arm import PlanarArm, dense, planar_problem
+from planar_arm import Blocked, PlanarArm, dense, planar_problem
 
 from arm_description.urdf.robot import Box
 from arm_node.rigid_transform import RigidTransform
@@ -88,6 +88,29 @@ class SteppedClock:
     def __call__(self) -> float:
         self.readings += 1
         return float(self.readings)
+
+
+class Doubter(PlanarArm):
+    """Proves no path for a while, as where samples took one past an obstacle, and no move."""
+
+    doubts = 60
+    """More than the proofs of what one search finds, and fewer than those of three."""
+
+    def prove(self, path: np.ndarray) -> Blocked | None:
+        if len(path) == 2 and path[0].tolist() == path[1].tolist():
+            return None
+        self.doubts -= 1
+        return super().prove(path) if self.doubts < 0 else Blocked(0, 0.5)
+
+    def is_free_edge(self, a: np.ndarray, b: np.ndarray) -> bool:
+        pytest.fail("a move was proved")
+
+
+def test_another_path_is_searched_for_where_one_cannot_be_proved():
+    arm = Doubter(POSTS)
+    path = PLANNER.plan(planar_problem(arm, START, GOAL))
+    assert arm.doubts < 0
+    assert all(map(arm.is_free, dense(path)))
 
 
 def test_a_search_ends_at_the_deadline():
