@@ -78,6 +78,15 @@ def test_a_named_pose_is_planned_shown_and_executed(planner, elbow):
     planner.wait_until(lambda: abs(elbow() - READY_RAD) < 0.05, "the elbow is where it was planned")
 
 
+def test_a_typed_pose_of_the_tip_is_not_cut(planner):
+    planner.page.get_by_text("Tip by numbers", exact=True).click()
+    fields = planner.page.locator("xpath=//label[.='Tip at']/following::input[1]")
+    field = fields.locator("visible=true")
+    field.fill("0.1534 0.1362 0.2315")
+    assert field.evaluate("field => field.scrollWidth <= field.clientWidth")
+    planner.page.get_by_text("Tip by numbers", exact=True).click()
+
+
 def test_a_box_in_the_way_is_named_and_fails_the_plan(planner):
     planner.page.get_by_text("Planning scene", exact=True).click()
     enter(planner, "Size", "0.1 0.1 0.1")
