@@ -123,3 +123,24 @@ def test_a_recording_is_refused_in_a_sentence_and_begins_and_ends_by_a_parameter
     printed, _ = replay.communicate(timeout=TIMEOUT_S)
     assert replay.returncode == 0, printed
     assert "control periods are equal" in printed
+
+
+@pytest.mark.parametrize("is_gone", [True, False], ids=["before", "meanwhile"])
+def test_a_recording_ends_with_its_simulation(launch, tmp_path, is_gone):
+    running = launch("camera:=none")
+    running.wait_until_ready()
+    verb = arm("sim", "record", str(tmp_path / "a.run"))
+    try:
+        assert verb.stdout is not None
+        assert "recording to" in verb.stdout.readline()
+        running.process.send_signal(signal.SIGINT)
+        if is_gone:
+            running.wait()
+        verb.send_signal(signal.SIGINT)
+        printed, _ = verb.communicate(timeout=TIMEOUT_S)
+        assert verb.returncode == 0, printed
+        assert "control periods in" in printed
+    finally:
+        if verb.poll() is None:
+            verb.kill()
+            verb.communicate()

@@ -114,10 +114,10 @@ class NodeParameters:
         self,
         session: CommandSession,
         node: NodeName,
-        answer_timeout_s: float = ANSWER_TIMEOUT_S,
+        answer_timeout_s: float | None = ANSWER_TIMEOUT_S,
         server_timeout_s: float = SERVER_TIMEOUT_S,
     ) -> None:
-        """Call the services of a node, from a session's node."""
+        """Call the services of a node, from a session's node; see `call_service`."""
         self._session = session
         self._node = node
         self._server_timeout_s = server_timeout_s

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from arm_cli.arguments import Argument, Flag, positive_number, verb
-from arm_cli.errors import ArmCliError, StoppedError
+from arm_cli.errors import ArmCliError, StoppedError, UnansweredError
 from arm_cli.output import complain, print_json, say
 from arm_cli.ros.connection import connect
 from arm_cli.sim.simulation import NAMESPACE, ask_simulation
@@ -54,7 +54,9 @@ def record(options: argparse.Namespace) -> None:
             simulation.session.spin_for(options.duration)
         except StoppedError:
             simulation.session.clear_stop()
-        simulation.set_parameter(PARAMETER, "")
+        # A simulation that ends, as at Ctrl-C in its launch, ends its recording by itself.
+        with suppress(UnansweredError):
+            simulation.set_parameter(PARAMETER, "", if_there=True)
     with _sentences():
         _say_recorded(path)
 

@@ -19,6 +19,8 @@ SERVING_NODE = "simulation"
 """The node that serves its figures."""
 STATE_SERVICE = "get_simulation_state"
 """Each simulation has this service."""
+GONE_S = 0.5
+"""A simulation that was there and is not seen for so long has ended."""
 RESULT_OK = 1
 PLAYING, PAUSED = 1, 2
 """States of SimulationState."""
@@ -98,8 +100,13 @@ class SimulationClient:
             for status in answer.status
         }
 
-    def set_parameter(self, name: str, content: float | str) -> None:
+    def set_parameter(self, name: str, content: float | str, *, if_there: bool = False) -> None:
         """Set a parameter of the simulation's node.
+
+        Args:
+            name: the parameter.
+            content: its value.
+            if_there: whether to wait only as long as the simulation, found before, is there.
 
         Raises:
             SimulationRefusedError: the simulation refuses the value.
@@ -110,16 +117,18 @@ class SimulationClient:
 
         value = ParameterValue()
         set_value(value, content)
-        result = self.parameters().set({name: value})[0]
+        result = self.parameters(if_there).set({name: value})[0]
         if not result.successful:
             raise SimulationRefusedError(result.reason)
 
-    def parameters(self) -> "NodeParameters":
-        """Return the parameters of the simulation's node."""
+    def parameters(self, if_there: bool = False) -> "NodeParameters":
+        """Return the parameters of the simulation's node; see `set_parameter`."""
         from arm_cli.ros.graph import NodeName
         from arm_cli.ros.parameters import NodeParameters
 
-        return NodeParameters(self.session, NodeName(self._namespace or "/", NODE))
+        node = NodeName(self._namespace or "/", NODE)
+        waits = {"server_timeout_s": GONE_S, "answer_timeout_s": None} if if_there else {}
+        return NodeParameters(self.session, node, **waits)
 
 
 @contextmanager
