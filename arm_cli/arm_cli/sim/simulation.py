@@ -127,8 +127,9 @@ class SimulationClient:
         from arm_cli.ros.parameters import NodeParameters
 
         node = NodeName(self._namespace or "/", NODE)
-        waits = {"server_timeout_s": GONE_S, "answer_timeout_s": None} if if_there else {}
-        return NodeParameters(self.session, node, **waits)
+        if not if_there:
+            return NodeParameters(self.session, node)
+        return NodeParameters(self.session, node, answer_timeout_s=None, server_timeout_s=GONE_S)
 
 
 @contextmanager

@@ -103,9 +103,23 @@ class ControllerAction(ABC, Generic[ControllerT, ResultT]):
 
     def _answer(self, goal: Any) -> GoalResponse:
         self._logger.info("Received new action goal")
-        return GoalResponse.ACCEPT if self.accepts(goal) else GoalResponse.REJECT
+        if not self.accepts(goal):
+            return GoalResponse.REJECT
+        if self._loop.lock_step is not None:
+            # rclpy tells the client before it calls `_start`. A partner may then answer the period,
+            # and the next one would begin with or without the goal.
+            self._loop.lock_step.hold()
+        return GoalResponse.ACCEPT
 
     def _start(self, handle: ServerGoalHandle) -> None:
+        try:
+            self._hand_over(handle)
+        finally:
+            if self._loop.lock_step is not None:
+                self._loop.lock_step.release()
+                self._loop.wake()
+
+    def _hand_over(self, handle: ServerGoalHandle) -> None:
         goal_id = bytes(handle.goal_id.uuid)
         self._idle.clear()
         self._running[goal_id] = handle

@@ -19,8 +19,8 @@ class LockStep:
     since the start, or since the loop gave up on it, may answer with any stamp; that is how it
     announces itself.
 
-    `record_answer` may be called on any thread, one at a time; everything else is for the loop
-    thread.
+    `record_answer` may be called on any thread, one at a time, and so may `hold` and `release`;
+    everything else is for the loop thread.
 
     Attributes:
         partners: names of the partners.
@@ -45,6 +45,7 @@ class LockStep:
         self._sources: list[Callable[[], None]] = []
         self._tick_ns = 0
         self._closed_since_s = math.nan
+        self._is_held = False
 
     def record_answer(self, partner: str, stamp_ns: int) -> bool:
         """Record an answer; return whether it opens the gate, so that the loop must be woken."""
@@ -56,6 +57,14 @@ class LockStep:
             return False
         self._answered_ns[partner] = stamp_ns
         return not self._missing()
+
+    def hold(self) -> None:
+        """Keep the gate closed: a client is told now of what the loop gets only afterwards."""
+        self._is_held = True
+
+    def release(self) -> None:
+        """End `hold`, as the loop has got it; the loop must be woken."""
+        self._is_held = False
 
     def set_timeout(self, timeout_s: float) -> None:
         """Wait this long for an answer from now on."""
@@ -81,7 +90,7 @@ class LockStep:
 
     def is_open(self) -> bool:
         """Return whether every partner has answered."""
-        if self._missing():
+        if self._is_held or self._missing():
             return False
         self._closed_since_s = math.nan
         self.failure = ""

@@ -59,6 +59,16 @@ def test_each_tick_waits_for_all_answers(started):
     assert started.lock_step.is_open()
 
 
+def test_a_goal_that_the_loop_does_not_have_yet_holds_the_tick(started):
+    started.tick(0.01)
+    started.lock_step.hold()
+    started.hear("/a", 0.01)
+    started.hear("/b", 0.01)
+    assert not started.lock_step.is_open(), "a partner that was told of it has answered"
+    started.lock_step.release()
+    assert started.lock_step.is_open()
+
+
 def test_an_earlier_stamp_is_no_answer_and_a_later_one_is(started):
     started.tick(0.01)
     started.hear("/a", 0.01)
