@@ -22,7 +22,7 @@ from arm_sim import Simulation
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 
 LENGTH_S = 20.0
-LONG_S = 400.0
+LONG_S = 150.0
 KEEP_VERDICTS = """
   window.verdicts = [];
   addEventListener("DOMContentLoaded", () => {
@@ -281,10 +281,10 @@ def test_a_run_plays_while_it_is_verified_and_only_what_is_equal_is_shown(timeli
     timeline.page.locator("#arm-deck-speed").select_option("10")
     timeline.page.locator("#arm-deck-play").click()
     timeline.wait_until(lambda: timeline.moment_s() > 1.0, "it plays")
-    timeline.wait_until(lambda: timeline.text("arm-run").startswith("✓ verified: all 40000"), "end")
+    timeline.wait_until(lambda: timeline.text("arm-run").startswith("✓ verified: all 15000"), "end")
     verdicts = timeline.page.evaluate("window.verdicts")
     meanwhile = [text for text, is_shown in verdicts if is_shown and text.startswith("…")]
-    equal = re.compile(r"… equal so far: (\S+) of 400.00 s")
+    equal = re.compile(r"… equal so far: (\S+) of 150.00 s")
     compared_s = [float(found[1]) for found in map(equal.fullmatch, meanwhile) if found]
     assert len(compared_s) == len(meanwhile) > 0, verdicts
     assert compared_s == sorted(compared_s)
@@ -301,7 +301,7 @@ def test_a_verification_that_is_left_says_what_it_did_not_compare(timeline):
     timeline.click("Back to live")
     said = timeline.says("verification stopped")
     found = re.fullmatch(
-        r"long\.run: verification stopped; 0 to (\S+) of 400\.00 s is equal, the rest was not "
+        r"long\.run: verification stopped; 0 to (\S+) of 150\.00 s is equal, the rest was not "
         r"compared",
         said,
     )
