@@ -5,6 +5,9 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 
@@ -27,6 +30,28 @@ def arm(*words: str, **options) -> "subprocess.Popen[str]":
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
         **options,
     )
+
+
+@contextmanager
+def record_verb(path: Path) -> "Iterator[subprocess.Popen[str]]":
+    """Record with `arm sim record`, and make sure that it is gone afterwards."""
+    verb = arm("sim", "record", str(path))
+    try:
+        assert verb.stdout is not None
+        assert "recording to" in verb.stdout.readline()
+        yield verb
+    finally:
+        if verb.poll() is None:
+            verb.kill()
+            verb.communicate()
+
+
+def interrupt(verb: "subprocess.Popen[str]") -> str:
+    """Interrupt it, which it must take as a success; return what it says."""
+    verb.send_signal(signal.SIGINT)
+    printed, _ = verb.communicate(timeout=TIMEOUT_S)
+    assert verb.returncode == 0, printed
+    return printed
 
 
 def move(client, commands, states, *positions: float) -> None:
@@ -106,19 +131,9 @@ def test_a_recording_is_refused_in_a_sentence_and_begins_and_ends_by_a_parameter
     assert not result.is_cut_off
     assert result.periods > 20
 
-    verb = arm("sim", "record", str(tmp_path / "verb.run"))
-    try:
-        assert verb.stdout is not None
-        assert "recording to" in verb.stdout.readline()
+    with record_verb(tmp_path / "verb.run") as verb:
         move(client, commands, states, 0.5, 0.2, 0.1, 0.3)
-        verb.send_signal(signal.SIGINT)
-        printed, _ = verb.communicate(timeout=TIMEOUT_S)
-        assert verb.returncode == 0, printed
-        assert "control periods in" in printed
-    finally:
-        if verb.poll() is None:
-            verb.kill()
-            verb.communicate()
+        assert "control periods in" in interrupt(verb)
     replay = arm("sim", "replay", str(tmp_path / "verb.run"))
     printed, _ = replay.communicate(timeout=TIMEOUT_S)
     assert replay.returncode == 0, printed
@@ -129,18 +144,8 @@ def test_a_recording_is_refused_in_a_sentence_and_begins_and_ends_by_a_parameter
 def test_a_recording_ends_with_its_simulation(launch, tmp_path, is_gone):
     running = launch("camera:=none")
     running.wait_until_ready()
-    verb = arm("sim", "record", str(tmp_path / "a.run"))
-    try:
-        assert verb.stdout is not None
-        assert "recording to" in verb.stdout.readline()
+    with record_verb(tmp_path / "a.run") as verb:
         running.process.send_signal(signal.SIGINT)
         if is_gone:
             running.wait()
-        verb.send_signal(signal.SIGINT)
-        printed, _ = verb.communicate(timeout=TIMEOUT_S)
-        assert verb.returncode == 0, printed
-        assert "control periods in" in printed
-    finally:
-        if verb.poll() is None:
-            verb.kill()
-            verb.communicate()
+        assert "control periods in" in interrupt(verb)
