@@ -18,7 +18,6 @@ from simulation_interfaces.srv import (
 from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.ros.world_convert import (
     ServiceRow,
-    answer,
     bounds_message,
     create_services,
     filter_of,
@@ -49,98 +48,71 @@ class EntityServices:
     def __init__(self, node: Node, editor: WorldEditor) -> None:
         self._editor = editor
         services: tuple[ServiceRow, ...] = (
-            (SpawnEntity, "spawn_entity", self._spawn),
-            (DeleteEntity, "delete_entity", self._delete),
-            (GetEntities, "get_entities", self._names),
-            (GetEntitiesStates, "get_entities_states", self._states),
-            (GetEntityState, "get_entity_state", self._state),
-            (SetEntityState, "set_entity_state", self._move),
-            (GetEntityInfo, "get_entity_info", self._info),
-            (SetEntityInfo, "set_entity_info", self._describe),
-            (GetEntityBounds, "get_entity_bounds", self._bounds),
+            (SpawnEntity, "spawn_entity", self._spawn, SPAWN_CODES),
+            (DeleteEntity, "delete_entity", self._delete, {}),
+            (GetEntities, "get_entities", self._names, {}),
+            (GetEntitiesStates, "get_entities_states", self._states, {}),
+            (GetEntityState, "get_entity_state", self._state, {}),
+            (SetEntityState, "set_entity_state", self._move, MOVE_CODES),
+            (GetEntityInfo, "get_entity_info", self._info, {}),
+            (SetEntityInfo, "set_entity_info", self._describe, {}),
+            (GetEntityBounds, "get_entity_bounds", self._bounds, {}),
         )
         create_services(node, services)
 
-    def _spawn(
-        self, request: SpawnEntity.Request, response: SpawnEntity.Response
-    ) -> SpawnEntity.Response:
-        def spawn() -> None:
-            response.entity_name = self._editor.spawn(
-                SpawnRequest(
-                    name=request.name,
-                    uri=request.entity_resource.uri,
-                    text=request.entity_resource.resource_string,
-                    pose=matrix_of(request.initial_pose.pose),
-                    frame=request.initial_pose.header.frame_id,
-                    namespace=request.entity_namespace,
-                    allow_renaming=request.allow_renaming,
-                )
+    def _spawn(self, request: SpawnEntity.Request, response: SpawnEntity.Response) -> None:
+        response.entity_name = self._editor.spawn(
+            SpawnRequest(
+                name=request.name,
+                uri=request.entity_resource.uri,
+                text=request.entity_resource.resource_string,
+                pose=matrix_of(request.initial_pose.pose),
+                frame=request.initial_pose.header.frame_id,
+                namespace=request.entity_namespace,
+                allow_renaming=request.allow_renaming,
             )
+        )
 
-        return answer(response, SPAWN_CODES, spawn)
+    def _delete(self, request: Any, _response: Any) -> None:
+        self._editor.delete(request.entity)
 
-    def _delete(self, request: Any, response: Any) -> Any:
-        return answer(response, {}, lambda: self._editor.delete(request.entity))
-
-    def _names(self, request: GetEntities.Request, response: GetEntities.Response) -> Any:
-        def find() -> None:
-            chosen = filter_of(request.filters).choose(
-                self._editor.entities, self._editor.motions()
-            )
-            response.entities = [entity.name for entity in chosen]
-
-        return answer(response, {}, find)
+    def _names(self, request: GetEntities.Request, response: GetEntities.Response) -> None:
+        chosen = filter_of(request.filters).choose(self._editor.entities, self._editor.motions())
+        response.entities = [entity.name for entity in chosen]
 
     def _states(
         self, request: GetEntitiesStates.Request, response: GetEntitiesStates.Response
-    ) -> Any:
-        def find() -> None:
-            motions = self._editor.motions()
-            chosen = filter_of(request.filters).choose(self._editor.entities, motions)
-            response.entities = [entity.name for entity in chosen]
-            response.states = [state_message(motions.of(e)) for e in chosen]
+    ) -> None:
+        motions = self._editor.motions()
+        chosen = filter_of(request.filters).choose(self._editor.entities, motions)
+        response.entities = [entity.name for entity in chosen]
+        response.states = [state_message(motions.of(e)) for e in chosen]
 
-        return answer(response, {}, find)
+    def _state(self, request: Any, response: Any) -> None:
+        entity = self._editor.entities.find(request.entity)
+        response.state = state_message(self._editor.motions().of(entity))
 
-    def _state(self, request: Any, response: Any) -> Any:
-        def look() -> None:
-            entity = self._editor.entities.find(request.entity)
-            response.state = state_message(self._editor.motions().of(entity))
+    def _move(self, request: SetEntityState.Request, _response: SetEntityState.Response) -> None:
+        state = request.state
+        if request.set_acceleration:
+            raise RequestError(
+                Refusal.UNSUPPORTED, "accelerations follow from forces and cannot be set"
+            )
+        if not (request.set_pose or request.set_twist):
+            raise RequestError(
+                Refusal.FAILED, "nothing to set: set_pose and set_twist are both false"
+            )
+        pose = matrix_of(state.pose) if request.set_pose else None
+        twist = twist_of(state.twist) if request.set_twist else None
+        self._editor.place(request.entity, pose, state.header.frame_id, twist)
 
-        return answer(response, {}, look)
+    def _info(self, request: Any, response: Any) -> None:
+        response.info = info_message(self._editor.entities.find(request.entity).note)
 
-    def _move(self, request: SetEntityState.Request, response: SetEntityState.Response) -> Any:
-        def move() -> None:
-            state = request.state
-            if request.set_acceleration:
-                raise RequestError(
-                    Refusal.UNSUPPORTED, "accelerations follow from forces and cannot be set"
-                )
-            if not (request.set_pose or request.set_twist):
-                raise RequestError(
-                    Refusal.FAILED, "nothing to set: set_pose and set_twist are both false"
-                )
-            pose = matrix_of(state.pose) if request.set_pose else None
-            twist = twist_of(state.twist) if request.set_twist else None
-            self._editor.place(request.entity, pose, state.header.frame_id, twist)
+    def _describe(self, request: Any, _response: Any) -> None:
+        self._editor.describe(request.entity, note_of(request.info))
 
-        return answer(response, MOVE_CODES, move)
-
-    def _info(self, request: Any, response: Any) -> Any:
-        def look() -> None:
-            response.info = info_message(self._editor.entities.find(request.entity).note)
-
-        return answer(response, {}, look)
-
-    def _describe(self, request: Any, response: Any) -> Any:
-        return answer(
-            response, {}, lambda: self._editor.describe(request.entity, note_of(request.info))
-        )
-
-    def _bounds(self, request: Any, response: Any) -> Any:
-        def look() -> None:
-            entity = self._editor.entities.find(request.entity)
-            motions = self._editor.motions()
-            response.bounds = bounds_message(motions.bounds(entity, motions.of(entity).pose))
-
-        return answer(response, {}, look)
+    def _bounds(self, request: Any, response: Any) -> None:
+        entity = self._editor.entities.find(request.entity)
+        motions = self._editor.motions()
+        response.bounds = bounds_message(motions.bounds(entity, motions.of(entity).pose))

@@ -1,7 +1,8 @@
 """The services of simulation_interfaces for the state, steps, snapshots and world of a run."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 from rclpy.executors import Executor
@@ -24,7 +25,7 @@ from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.ros_executor_bridge import call_on_loop, wait_for_future
 from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.errors import Refusal, RequestError
-from arm_gazebo.ros.world_convert import ServiceRow, answer, create_services, refuse, world_message
+from arm_gazebo.ros.world_convert import ServiceRow, create_services, world_message
 from arm_gazebo.state.run_reset import ResetScope, RunReset
 from arm_gazebo.state.snapshots import RunSnapshot, SnapshotStore
 from arm_gazebo.world.editor import WorldEditor
@@ -76,16 +77,17 @@ class RunServices:
         self._loader = loader
         self._about = about
         services: tuple[ServiceRow, ...] = (
-            (GetSimulatorFeatures, "get_simulator_features", self._features),
-            (GetSimulationState, "get_simulation_state", self._state),
-            (SetSimulationState, "set_simulation_state", self._set_state),
-            (ResetSimulation, "reset_simulation", self._reset),
-            (LoadWorld, "load_world", self._load),
-            (UnloadWorld, "unload_world", self._unload),
-            (GetCurrentWorld, "get_current_world", self._current),
-            (GetAvailableWorlds, "get_available_worlds", self._available),
+            (GetSimulationState, "get_simulation_state", self._state, {}),
+            (SetSimulationState, "set_simulation_state", self._set_state, STATE_CODES),
+            (ResetSimulation, "reset_simulation", self._reset, {}),
+            (LoadWorld, "load_world", self._load, LOAD_CODES),
+            (UnloadWorld, "unload_world", self._unload, UNLOAD_CODES),
+            (GetCurrentWorld, "get_current_world", self._current, CURRENT_CODES),
+            (GetAvailableWorlds, "get_available_worlds", self._available, {}),
         )
         create_services(node, services)
+        # Apart from the others, because its response has no result.
+        node.create_service(GetSimulatorFeatures, "get_simulator_features", self._features)
 
     def _features(self, _request: Any, response: GetSimulatorFeatures.Response) -> Any:
         response.features = SimulatorFeatures(
@@ -95,75 +97,54 @@ class RunServices:
         )
         return response
 
-    def _state(self, _request: Any, response: GetSimulationState.Response) -> Any:
-        def look() -> None:
-            response.state.state = self._run.state.value
+    def _state(self, _request: Any, response: GetSimulationState.Response) -> None:
+        response.state.state = self._run.state.value
 
-        return answer(response, {}, look)
+    def _set_state(self, request: SetSimulationState.Request, response: Any) -> None:
+        try:
+            target = RunState(request.state.state)
+        except ValueError as error:
+            raise RequestError(
+                Refusal.INCORRECT_TRANSITION,
+                f"no state {request.state.state}; there are "
+                + ", ".join(f"{state.value} {state.name}" for state in RunState),
+            ) from error
+        self._run.go_to(target)
 
-    def _set_state(self, request: SetSimulationState.Request, response: Any) -> Any:
-        def change() -> None:
-            try:
-                target = RunState(request.state.state)
-            except ValueError as error:
-                raise RequestError(
-                    Refusal.INCORRECT_TRANSITION,
-                    f"no state {request.state.state}; there are "
-                    + ", ".join(f"{state.value} {state.name}" for state in RunState),
-                ) from error
-            self._run.go_to(target)
-
-        return answer(response, STATE_CODES, change)
-
-    def _reset(self, request: ResetSimulation.Request, response: Any) -> Any:
-        def reset() -> None:
-            scope = request.scope or ResetSimulation.Request.SCOPE_ALL
-            self._reset_run.reset(
-                ResetScope(
-                    time=bool(scope & ResetSimulation.Request.SCOPE_TIME),
-                    state=bool(scope & ResetSimulation.Request.SCOPE_STATE),
-                    spawned=bool(scope & ResetSimulation.Request.SCOPE_SPAWNED),
-                )
+    def _reset(self, request: ResetSimulation.Request, _response: Any) -> None:
+        scope = request.scope or ResetSimulation.Request.SCOPE_ALL
+        self._reset_run.reset(
+            ResetScope(
+                time=bool(scope & ResetSimulation.Request.SCOPE_TIME),
+                state=bool(scope & ResetSimulation.Request.SCOPE_STATE),
+                spawned=bool(scope & ResetSimulation.Request.SCOPE_SPAWNED),
             )
+        )
 
-        return answer(response, {}, reset)
+    def _load(self, request: LoadWorld.Request, response: LoadWorld.Response) -> None:
+        resource = request.world_resource
+        base, world = self._loader.load(
+            resource.uri, resource.resource_string, request.fail_on_unsupported_element
+        )
+        with self._run.paused_as(RunState.STOPPED):
+            self._editor.replace_world(base)
+        self._loader.world = world
+        response.world = world_message(world)
 
-    def _load(self, request: LoadWorld.Request, response: LoadWorld.Response) -> Any:
-        def load() -> None:
-            resource = request.world_resource
-            base, world = self._loader.load(
-                resource.uri, resource.resource_string, request.fail_on_unsupported_element
-            )
-            with self._run.paused_as(RunState.STOPPED):
-                self._editor.replace_world(base)
-            self._loader.world = world
-            response.world = world_message(world)
+    def _unload(self, _request: Any, _response: UnloadWorld.Response) -> None:
+        self._loaded()
+        with self._run.paused_as(RunState.NO_WORLD):
+            self._editor.replace_world(self._loader.load_empty())
+        self._loader.world = None
 
-        return answer(response, LOAD_CODES, load)
+    def _current(self, _request: Any, response: GetCurrentWorld.Response) -> None:
+        response.world = world_message(self._loaded())
 
-    def _unload(self, _request: Any, response: UnloadWorld.Response) -> Any:
-        def unload() -> None:
-            self._loaded()
-            with self._run.paused_as(RunState.NO_WORLD):
-                self._editor.replace_world(self._loader.load_empty())
-            self._loader.world = None
-
-        return answer(response, UNLOAD_CODES, unload)
-
-    def _current(self, _request: Any, response: GetCurrentWorld.Response) -> Any:
-        def look() -> None:
-            response.world = world_message(self._loaded())
-
-        return answer(response, CURRENT_CODES, look)
-
-    def _available(self, request: GetAvailableWorlds.Request, response: Any) -> Any:
-        def look() -> None:
-            worlds = available_worlds(list(request.additional_sources), request.continue_on_error)
-            wanted = bool(request.filter.tags)
-            # No world has tags.
-            response.worlds = [] if wanted else [world_message(world) for world in worlds]
-
-        return answer(response, {}, look)
+    def _available(self, request: GetAvailableWorlds.Request, response: Any) -> None:
+        worlds = available_worlds(list(request.additional_sources), request.continue_on_error)
+        wanted = bool(request.filter.tags)
+        # No world has tags.
+        response.worlds = [] if wanted else [world_message(world) for world in worlds]
 
     def _loaded(self) -> NamedWorld:
         if self._loader.world is None:
@@ -184,39 +165,28 @@ class SnapshotServices:
     def __init__(self, node: Node, snapshots: SnapshotStore) -> None:
         self._snapshots = snapshots
         services: tuple[ServiceRow, ...] = (
-            (LoadWorld, "save_snapshot", self._save),
-            (LoadWorld, "restore_snapshot", self._restore),
-            (LoadWorld, "remove_snapshot", self._remove),
-            (GetAvailableWorlds, "list_snapshots", self._list),
+            (LoadWorld, "save_snapshot", self._save, SNAPSHOT_CODES),
+            (LoadWorld, "restore_snapshot", self._restore, SNAPSHOT_CODES),
+            (LoadWorld, "remove_snapshot", self._remove, SNAPSHOT_CODES),
+            (GetAvailableWorlds, "list_snapshots", self._list, {}),
         )
         create_services(node, services)
 
-    def _save(self, request: LoadWorld.Request, response: LoadWorld.Response) -> Any:
-        def save() -> None:
-            where = request.world_resource.uri
-            response.world = _message(where, self._snapshots.save(where))
+    def _save(self, request: LoadWorld.Request, response: LoadWorld.Response) -> None:
+        where = request.world_resource.uri
+        response.world = _message(where, self._snapshots.save(where))
 
-        return answer(response, SNAPSHOT_CODES, save)
+    def _restore(self, request: LoadWorld.Request, response: LoadWorld.Response) -> None:
+        where = request.world_resource.uri
+        snapshot, remark = self._snapshots.restore(where)
+        response.world = _message(where, snapshot, remark)
 
-    def _restore(self, request: LoadWorld.Request, response: LoadWorld.Response) -> Any:
-        def restore() -> None:
-            where = request.world_resource.uri
-            snapshot, remark = self._snapshots.restore(where)
-            response.world = _message(where, snapshot, remark)
+    def _remove(self, request: LoadWorld.Request, _response: LoadWorld.Response) -> None:
+        self._snapshots.remove(request.world_resource.uri)
 
-        return answer(response, SNAPSHOT_CODES, restore)
-
-    def _remove(self, request: LoadWorld.Request, response: LoadWorld.Response) -> Any:
-        return answer(
-            response, SNAPSHOT_CODES, lambda: self._snapshots.remove(request.world_resource.uri)
-        )
-
-    def _list(self, _request: Any, response: GetAvailableWorlds.Response) -> Any:
-        def look() -> None:
-            named = self._snapshots.named()
-            response.worlds = [_message(name, snapshot) for name, snapshot in named.items()]
-
-        return answer(response, {}, look)
+    def _list(self, _request: Any, response: GetAvailableWorlds.Response) -> None:
+        named = self._snapshots.named()
+        response.worlds = [_message(name, snapshot) for name, snapshot in named.items()]
 
 
 def _message(where: str, snapshot: RunSnapshot, remark: str = "") -> WorldResource:
@@ -263,37 +233,28 @@ class StepServices:
         create_services(
             node,
             (
-                (StepSimulation, "step_simulation", self._step),
-                (StepSimulation, "step_simulation_with_sensors", self._step_with_sensors),
+                (StepSimulation, "step_simulation", self._step, {}),
+                (StepSimulation, "step_simulation_with_sensors", self._step_with_sensors, {}),
             ),
         )
 
     # Coroutines, so that a request to end a long run of steps is answered in the meantime.
 
-    async def _step(self, request: StepSimulation.Request, response: Any) -> Any:
-        try:
+    async def _step(self, request: StepSimulation.Request, response: Any) -> None:
+        with _stopped_loop_refused():
             done = await wait_for_future(self._run.step(request.steps), self._executor)
-        except RequestError as error:
-            return refuse(response, {}, error)
-        except (LoopStoppedError, ValueError) as error:
-            return refuse(response, {}, RequestError(Refusal.FAILED, str(error)))
-        return self._answered(response, done, request.steps)
+        self._report(response, done, request.steps)
 
-    async def _step_with_sensors(self, request: StepSimulation.Request, response: Any) -> Any:
+    async def _step_with_sensors(self, request: StepSimulation.Request, response: Any) -> None:
         done = 0
-        try:
-            with self._run.run_of_steps(request.steps) as goes_on:
+        with _stopped_loop_refused(), self._run.run_of_steps(request.steps) as goes_on:
+            await self._pictures_are_out()
+            before = [camera.missed() for camera in self._cameras]
+            while done < request.steps and goes_on():
+                done += await wait_for_future(self._run.step(1), self._executor)
                 await self._pictures_are_out()
-                before = [camera.missed() for camera in self._cameras]
-                while done < request.steps and goes_on():
-                    done += await wait_for_future(self._run.step(1), self._executor)
-                    await self._pictures_are_out()
-                    self._check_sent(before)
-        except RequestError as error:
-            return refuse(response, {}, error)
-        except (LoopStoppedError, ValueError) as error:
-            return refuse(response, {}, RequestError(Refusal.FAILED, str(error)))
-        return self._answered(response, done, request.steps)
+                self._check_sent(before)
+        self._report(response, done, request.steps)
 
     async def _pictures_are_out(self) -> None:
         """Wait until every picture that was taken has been published.
@@ -327,12 +288,19 @@ class StepServices:
                     f"no picture of {', '.join(names)}: the camera process is not running",
                 )
 
-    def _answered(self, response: Any, done: int, asked: int) -> Any:
-        response.result.result = Result.RESULT_OK
+    def _report(self, response: Any, done: int, asked: int) -> None:
         if done < asked:
             failure = self._loop.lock_step and self._loop.lock_step.failure
             response.result.result = Result.RESULT_OPERATION_FAILED
             response.result.error_message = (
                 f"{done} of {asked} steps: {failure or 'the state was changed'}"
             )
-        return response
+
+
+@contextmanager
+def _stopped_loop_refused() -> Iterator[None]:
+    """Refuse a request if the loop has stopped, or cannot take that many steps."""
+    try:
+        yield
+    except (LoopStoppedError, ValueError) as error:
+        raise RequestError(Refusal.FAILED, str(error)) from error

@@ -1,7 +1,9 @@
 """Convert messages of simulation_interfaces to and from the core's data."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import partial
 from inspect import iscoroutinefunction
 from typing import Any
 
@@ -29,52 +31,57 @@ from arm_gazebo.world.entity import WORLD_FRAME, Category, EntityNote
 from arm_gazebo.world.entity_motion import Box, EntityFilter, EntityMotion, Volume
 from arm_gazebo.world.loading import NamedWorld
 
-ServiceRow = tuple[Any, str, Callable[[Any, Any], Any]]
-"""Type, name and callback, which takes request and response and returns the response."""
+Codes = Mapping[Refusal, int]
+ServiceRow = tuple[Any, str, Callable[[Any, Any], Any], Codes]
+"""Type, name and handler of a service, and its result codes for refusals beyond the common ones.
 
-
-def create_services(node: Node, rows: Iterable[ServiceRow]) -> None:
-    """Create a service for each row; a callback may be a coroutine.
-
-    A coroutine gets its own callback group, because it blocks its group until it ends.
-    """
-    for type_, name, callback in rows:
-        group = MutuallyExclusiveCallbackGroup() if iscoroutinefunction(callback) else None
-        node.create_service(type_, name, callback, callback_group=group)
-
-
+The handler takes request and response, and fills in the response; it raises RequestError to refuse.
+"""
 COMMON_CODES = {
     Refusal.UNSUPPORTED: Result.RESULT_FEATURE_UNSUPPORTED,
     Refusal.NOT_FOUND: Result.RESULT_NOT_FOUND,
     Refusal.INCORRECT_STATE: Result.RESULT_INCORRECT_STATE,
 }
-Codes = Mapping[Refusal, int]
 MAX_POINTS = 10_000
 MIN_NORM = 1e-6
 
 
-def answer(response: Any, codes: Codes, action: Callable[[], None]) -> Any:
-    """Run the action and return the response with the result.
+def create_services(node: Node, rows: Iterable[ServiceRow]) -> None:
+    """Create a service for each row; a handler may be a coroutine.
 
-    Args:
-        response: a response with a `result`.
-        codes: the service's result codes for refusals beyond the common ones.
-        action: fills in the rest of the response; raises RequestError to refuse.
+    A coroutine gets its own callback group, because it blocks its group until it ends.
     """
-    try:
-        action()
-    except RequestError as error:
-        return refuse(response, codes, error)
+    for type_, name, handler, codes in rows:
+        is_coroutine = iscoroutinefunction(handler)
+        callback = partial(_answer_later if is_coroutine else _answer, handler, codes)
+        group = MutuallyExclusiveCallbackGroup() if is_coroutine else None
+        node.create_service(type_, name, callback, callback_group=group)
+
+
+def _answer(handler: Callable[[Any, Any], Any], codes: Codes, request: Any, response: Any) -> Any:
+    with _refusals(response, codes):
+        handler(request, response)
+    return response
+
+
+async def _answer_later(
+    handler: Callable[[Any, Any], Any], codes: Codes, request: Any, response: Any
+) -> Any:
+    with _refusals(response, codes):
+        await handler(request, response)
+    return response
+
+
+@contextmanager
+def _refusals(response: Any, codes: Codes) -> Iterator[None]:
+    """Set the result of a response: a success, unless the block refuses or sets another."""
     response.result.result = Result.RESULT_OK
-    return response
-
-
-def refuse(response: Any, codes: Codes, error: RequestError) -> Any:
-    """Return the response with the reason of the refusal; see `answer`."""
-    code = codes.get(error.refusal, COMMON_CODES.get(error.refusal))
-    response.result.result = Result.RESULT_OPERATION_FAILED if code is None else code
-    response.result.error_message = str(error)
-    return response
+    try:
+        yield
+    except RequestError as error:
+        code = codes.get(error.refusal, COMMON_CODES.get(error.refusal))
+        response.result.result = Result.RESULT_OPERATION_FAILED if code is None else code
+        response.result.error_message = str(error)
 
 
 def matrix_of(pose: Pose) -> Matrix:
