@@ -2,8 +2,8 @@
 
 import os
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 
 from arm_control.errors import ArmControlError
 from arm_description.errors import DescriptionError
@@ -15,21 +15,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the simulation until it is told to stop; return the exit code."""
     arguments = list(sys.argv if argv is None else argv)
 
-    @contextmanager
-    def application(process: NodeProcess) -> Iterator[None]:
-        with _simulation(process, arguments):
-            yield
+    def application(process: NodeProcess) -> AbstractContextManager[None]:
+        # This process draws nothing. Without this setting MuJoCo loads a window library, in 50 ms.
+        os.environ.setdefault("MUJOCO_GL", "disabled")
+        # Imported only after the environment is prepared, because it locates the message packages.
+        from arm_gazebo.ros.simulation_process import simulation_process
+
+        return simulation_process(process, arguments)
 
     return run_process(application, arguments, (GazeboError, ArmControlError, DescriptionError))
-
-
-def _simulation(process: NodeProcess, arguments: list[str]) -> AbstractContextManager[None]:
-    # This process draws nothing. Without this setting MuJoCo loads a window library, in 50 ms.
-    os.environ.setdefault("MUJOCO_GL", "disabled")
-    # Imported only after the environment is prepared, because it locates the message packages.
-    from arm_gazebo.ros.simulation_process import simulation_process
-
-    return simulation_process(process, arguments)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """The executable `ros2_control_node`: a controller manager for a description's hardware."""
 
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 
 from arm_control.errors import ArmControlError
 from arm_node.process import NodeProcess, run_process
@@ -12,13 +12,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the controller manager until it is told to stop; return the exit code."""
     arguments = list(sys.argv if argv is None else argv)
 
-    @contextmanager
-    def application(process: NodeProcess) -> Iterator[None]:
+    def application(process: NodeProcess) -> AbstractContextManager[None]:
         # Imported after the environment is prepared, because message packages are found through it.
         from arm_control.manager.ros.control_process import control_process
 
-        with control_process(process, arguments):
-            yield
+        return control_process(process, arguments)
 
     return run_process(application, arguments, (ArmControlError,))
 
