@@ -5,23 +5,18 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 from geometry_msgs.msg import Point, Vector3
-from rclpy.clock import Clock
-from rclpy.clock_type import ClockType
-from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
 from arm_gazebo.errors import RequestError
 from arm_gazebo.physics.physics import Physics
+from arm_gazebo.ros.world_markers import watched_publisher
 from arm_gazebo.world.contacts import Contact, Vector, contacts_of
 from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.entity import WORLD_FRAME
 
 TOPIC = "contact_markers"
-QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-PERIOD_S = 0.1
 MAX_CONTACTS = 200
 """The strongest are published; more could not be told apart."""
 MAX_LISTED = 8
@@ -43,23 +38,13 @@ class ContactMarkerPublisher:
         self._node = node
         self._editor = editor
         self._physics = physics
-        self._timer = node.create_timer(
-            PERIOD_S, self._check, clock=Clock(clock_type=ClockType.STEADY_TIME)
-        )
-        self._timer.cancel()
-        self._publisher = node.create_publisher(
-            MarkerArray, TOPIC, QOS, event_callbacks=PublisherEventCallbacks(matched=self._match)
-        )
+        self._publisher = watched_publisher(node, TOPIC, self._check, self._repeat)
         self._model: mujoco.MjModel | None = None
         self._data: mujoco.MjData
         self._sent: MarkerArray | None = None
 
-    def _match(self, matched: QoSPublisherMatchedInfo) -> None:
-        if not matched.current_count:
-            self._timer.cancel()
-        elif matched.current_count_change > 0:
-            self._sent = None
-            self._timer.reset()
+    def _repeat(self) -> None:
+        self._sent = None
 
     def _check(self) -> None:
         # Fast DDS may count a subscription that ended right after it began for ever.

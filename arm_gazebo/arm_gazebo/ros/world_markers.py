@@ -1,6 +1,7 @@
 """The shapes of a world as markers: made of any model, and published while they move."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from geometry_msgs.msg import Point, Vector3
@@ -8,6 +9,7 @@ from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
@@ -42,24 +44,14 @@ class WorldMarkerPublisher:
 
     def __init__(self, node: Node, editor: WorldEditor) -> None:
         self._editor = editor
-        self._timer = node.create_timer(
-            MARKER_PERIOD_S, self._check, clock=Clock(clock_type=ClockType.STEADY_TIME)
-        )
-        self._timer.cancel()
-        self._publisher = node.create_publisher(
-            MarkerArray, TOPIC, QOS, event_callbacks=PublisherEventCallbacks(matched=self._match)
-        )
+        self._publisher = watched_publisher(node, TOPIC, self._check, self._repeat)
         self._has_new_subscriber = False
         self._model: object = None
         self._shown: dict[tuple[str, int], None] = {}
         self._removed: dict[tuple[str, int], None] = {}
 
-    def _match(self, matched: QoSPublisherMatchedInfo) -> None:
-        if not matched.current_count:
-            self._timer.cancel()
-        elif matched.current_count_change > 0:
-            self._has_new_subscriber = True
-            self._timer.reset()
+    def _repeat(self) -> None:
+        self._has_new_subscriber = True
 
     def _check(self) -> None:
         if self._model is not self._editor.model:
@@ -85,6 +77,32 @@ class WorldMarkerPublisher:
         self._places = places[: 7 * len(markers)]
         # NaN makes every shape count as moved in the next comparison.
         self._poses = np.full((len(markers), 7), math.nan)
+
+
+def watched_publisher(
+    node: Node, topic: str, check: Callable[[], None], repeat: Callable[[], None]
+) -> Publisher:
+    """Return a latched publisher of markers that costs nothing while nobody subscribes.
+
+    Args:
+        node: gets the publisher; its executor runs both functions.
+        topic: name of the topic.
+        check: called ten times a second of wall time while there are subscribers.
+        repeat: called for each new subscriber, before the next check.
+    """
+    steady = Clock(clock_type=ClockType.STEADY_TIME)
+    timer = node.create_timer(MARKER_PERIOD_S, check, clock=steady)
+    timer.cancel()
+
+    def match(matched: QoSPublisherMatchedInfo) -> None:
+        if not matched.current_count:
+            timer.cancel()
+        elif matched.current_count_change > 0:
+            repeat()
+            timer.reset()
+
+    events = PublisherEventCallbacks(matched=match)
+    return node.create_publisher(MarkerArray, topic, QOS, event_callbacks=events)
 
 
 def marker_of(shape: WorldShape) -> Marker:
