@@ -26,20 +26,6 @@ _SCALARS = (bool, int, float, str)
 
 
 @dataclass(frozen=True, slots=True)
-class _Rules:
-    description: str
-    read_only: bool
-    above: float | None = None
-    at_least: float | None = None
-    at_most: float | None = None
-    one_of: tuple[str, ...] = ()
-    at_configuration: bool = False
-
-
-_RULE_NAMES = tuple(field.name for field in dataclasses.fields(_Rules))
-
-
-@dataclass(frozen=True, slots=True)
 class ParameterSpec:
     """One parameter.
 
@@ -62,8 +48,8 @@ class ParameterSpec:
     type: type
     is_list: bool
     default: Any
-    description: str
-    read_only: bool
+    description: str = ""
+    read_only: bool = False
     above: float | None = None
     at_least: float | None = None
     at_most: float | None = None
@@ -146,7 +132,15 @@ def parameter(
         one_of: the allowed values.
         at_configuration: whether a change takes effect at the controller's next configuration.
     """
-    rules = _Rules(description, read_only, above, at_least, at_most, one_of, at_configuration)
+    rules = {
+        "description": description,
+        "read_only": read_only,
+        "above": above,
+        "at_least": at_least,
+        "at_most": at_most,
+        "one_of": one_of,
+        "at_configuration": at_configuration,
+    }
     return dataclasses.field(default=default, metadata={_METADATA_KEY: rules})
 
 
@@ -236,7 +230,7 @@ def _fixed_specs(parameters_type: type[Any], prefix: str = "") -> tuple[Paramete
         if dataclasses.is_dataclass(hint) and isinstance(hint, type):
             specs.extend(_fixed_specs(hint, f"{name}."))
             continue
-        rules = field.metadata.get(_METADATA_KEY, _Rules("", read_only=False))
+        rules = field.metadata.get(_METADATA_KEY, {})
         is_list = get_origin(hint) is tuple
         element = get_args(hint)[0] if is_list else hint
         if element not in _SCALARS or field.default is MISSING:
@@ -244,15 +238,7 @@ def _fixed_specs(parameters_type: type[Any], prefix: str = "") -> tuple[Paramete
                 f"field '{field.name}' of {parameters_type.__name__} needs a default and one of "
                 "the types bool, int, float, str, or a tuple[..., ...] of one of them"
             )
-        specs.append(
-            ParameterSpec(
-                name,
-                element,
-                is_list,
-                field.default,
-                **{name: getattr(rules, name) for name in _RULE_NAMES},
-            )
-        )
+        specs.append(ParameterSpec(name, element, is_list, field.default, **rules))
     return tuple(specs)
 
 

@@ -157,42 +157,32 @@ class ResourceManager:
         for component, ours, theirs in self._concerned(start, stop):
             if ours and component.state not in self._commandable:
                 return f"hardware component '{component.name}' is {component.state.label}"
-            reason = failure_of(
-                lambda c=component, a=ours, b=theirs: c.hardware.prepare_command_mode_switch(a, b),
-                f"prepare_command_mode_switch of hardware component '{component.name}'",
-            )
-            if reason:
+            if reason := _mode_switch_failure(component, "prepare", ours, theirs):
                 return reason
         return ""
 
     def perform_mode_switch(self, start: Sequence[str], stop: Sequence[str]) -> str:
         """Tell each affected component; return why one failed, or an empty string."""
         for component, ours, theirs in self._concerned(start, stop):
-            reason = failure_of(
-                lambda c=component, a=ours, b=theirs: c.hardware.perform_command_mode_switch(a, b),
-                f"perform_command_mode_switch of hardware component '{component.name}'",
-            )
-            if reason:
+            if reason := _mode_switch_failure(component, "perform", ours, theirs):
                 return reason
         return ""
 
     def read(self, time_s: float, period_s: float) -> list[HardwareFault]:
         """Read every configured component that is due; return the faults."""
-        faults: list[HardwareFault] = []
-        for component in self._reading:
-            outcome = component.read(time_s, period_s)
-            if outcome is not _OK:
-                faults.append((component, outcome))
-        return faults
+        return [
+            (component, outcome)
+            for component in self._reading
+            if (outcome := component.read(time_s, period_s)) is not _OK
+        ]
 
     def write(self, time_s: float, period_s: float) -> list[HardwareFault]:
         """Write every active component that is due; return the faults."""
-        faults: list[HardwareFault] = []
-        for component in self._writing:
-            outcome = component.write(time_s, period_s)
-            if outcome is not _OK:
-                faults.append((component, outcome))
-        return faults
+        return [
+            (component, outcome)
+            for component in self._writing
+            if (outcome := component.write(time_s, period_s)) is not _OK
+        ]
 
     def unmeasured_states(self) -> tuple[str, ...]:
         """Return the states of active components that are not numbers; any thread."""
@@ -362,3 +352,14 @@ class ResourceManager:
         every = tuple(self.components.values())
         self._reading = tuple(c for c in every if c.is_available)
         self._writing = tuple(c for c in every if c.state is LifecycleState.ACTIVE)
+
+
+def _mode_switch_failure(
+    component: HardwareComponent, step: str, start: Sequence[str], stop: Sequence[str]
+) -> str:
+    """Let a driver "prepare" or "perform" a switch; return why it failed, or an empty string."""
+    method = f"{step}_command_mode_switch"
+    return failure_of(
+        lambda: getattr(component.hardware, method)(start, stop),
+        f"{method} of hardware component '{component.name}'",
+    )
