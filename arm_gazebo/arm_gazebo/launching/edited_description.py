@@ -70,11 +70,7 @@ def copy_description(urdf: str, name: str) -> DescriptionCopy:
     for element in document.iterfind("gazebo//*"):
         if str(element.tag).endswith(TOPIC) and element.text:
             element.text = element.text.strip().lstrip("/")
-    text = etree.tostring(document, encoding="unicode")
-    source = source_of(urdf)
-    if source.file is not None:
-        text = with_source(text, source.file, source.package_path)
-    return DescriptionCopy(name, text, names)
+    return DescriptionCopy(name, edited_text(document, urdf), names)
 
 
 def _links_and_joints(document: etree._Element) -> Iterator[str]:
@@ -122,7 +118,12 @@ def placed(urdf: str, pose: Sequence[float]) -> str:
         etree.SubElement(element, "parent", link=world)
         etree.SubElement(element, "child", link=robot.root)
         _set_origin(element, place.matrix())
-    source = source_of(urdf)
+    return edited_text(document, urdf)
+
+
+def edited_text(document: etree._Element, original: str) -> str:
+    """Return the text of a document, with the source that the original's text names."""
+    source = source_of(original)
     text = etree.tostring(document, encoding="unicode")
     return text if source.file is None else with_source(text, source.file, source.package_path)
 

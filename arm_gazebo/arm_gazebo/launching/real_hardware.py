@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import lxml.etree as etree
 
-from arm_description.urdf.description_source import source_of, with_source
 from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.errors import SimSettingsError
+from arm_gazebo.launching.edited_description import edited_text
 
 SIMULATION = "simulation"
 PLUGINS = {
@@ -67,6 +67,4 @@ def on_hardware(urdf: str, hardware: str, parameters: Mapping[str, str]) -> str:
     for state in blocks[0].findall("joint/state_interface"):
         if state.get("name") in UNMEASURED.get(plugin, ()):
             state.getparent().remove(state)
-    source = source_of(urdf)
-    text = etree.tostring(document, encoding="unicode")
-    return text if source.file is None else with_source(text, source.file, source.package_path)
+    return edited_text(document, urdf)
