@@ -1,6 +1,7 @@
 """What tests of several packages share: a ROS domain of their own, patience with the machine."""
 
 import atexit
+import gc
 import os
 import signal
 import subprocess
@@ -9,6 +10,7 @@ import tempfile
 from collections.abc import Generator, Iterator
 from contextlib import ExitStack
 from functools import cache
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -59,6 +61,32 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join([sys.prefix, *filter(None, prefixes)])
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Collect without looking for garbage: what is collected stays until the end."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.enable()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(
+    collector: pytest.Collector,
+) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Let each worker begin with other folders: one finds what another has compiled.
+
+    Else all of them would compile each file at the same time. They agree on the order afterwards.
+    """
+    report = yield
+    worker = getattr(collector.config, "workerinput", None)
+    if worker is not None and collector.path == Path(__file__).parent:
+        start = int(worker["workerid"][2:]) * len(report.result) // worker["workercount"]
+        report.result[:] = report.result[start:] + report.result[:start]
+    return report
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Let workers begin with the slow files, then those that start processes.
 
@@ -68,6 +96,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """
     if not hasattr(config, "workerinput"):
         return
+    items.sort(key=lambda item: item.path.parts)
     slow, ros = (
         {item.path for item in items if item.get_closest_marker(mark)} for mark in ("slow", "ros")
     )

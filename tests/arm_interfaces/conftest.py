@@ -21,7 +21,7 @@ FOLDER = Path(__file__).parent
 EXPECTED_TYPES: dict[str, dict[str, Any]] = {
     name: record
     for file in ("expected_types.yaml", "expected_moveit_types.yaml")
-    for name, record in yaml.safe_load((FOLDER / file).read_text(encoding="utf-8")).items()
+    for name, record in yaml.load((FOLDER / file).read_bytes(), yaml.CSafeLoader).items()
 }
 WAIT_TIMEOUT_S = 30.0
 

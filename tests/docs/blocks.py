@@ -12,6 +12,7 @@ A comment before a block says how it runs:
 
 import re
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from markdown_it import MarkdownIt
@@ -56,7 +57,8 @@ class Command:
     output: tuple[str, ...]
 
 
-def blocks_of(page: Path) -> list[Block]:
+@cache
+def blocks_of(page: Path) -> tuple[Block, ...]:
     """Return the blocks of a page, in their order."""
     found: list[Block] = []
     directive = ""
@@ -74,7 +76,7 @@ def blocks_of(page: Path) -> list[Block]:
             Block(name, token.map[0] + 1, words[1], words[2] or "", directive, token.content)
         )
         directive = ""
-    return found
+    return tuple(found)
 
 
 def commands_of(block: Block) -> list[Command]:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import yourdfpy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import etree
@@ -111,6 +110,8 @@ def trees(draw: st.DrawFn) -> tuple[str, dict[str, float]]:
 
 
 def second_opinion(text: str, positions: dict[str, float]) -> Any:
+    import yourdfpy  # two seconds of every worker that collects this file, if above
+
     loader = yourdfpy.URDF(
         yourdfpy.URDF._parse_robot(xml_element=etree.fromstring(text)),
         load_meshes=False,

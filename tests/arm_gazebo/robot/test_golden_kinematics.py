@@ -3,7 +3,6 @@
 import mujoco
 import numpy as np
 import pytest
-import yourdfpy
 from lxml import etree
 
 from arm_description.urdf.parser import parse_urdf
@@ -71,6 +70,8 @@ ROBOTS = {
 
 def second_opinion(text):
     """Return yourdfpy's robot with every joint free: it does not solve chains of mimics."""
+    import yourdfpy  # two seconds of every worker that collects this file, if above
+
     root = etree.fromstring(text)
     etree.strip_elements(root, "mimic")
     return yourdfpy.URDF(
