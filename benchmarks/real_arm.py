@@ -22,13 +22,11 @@ import numpy as np
 
 from arm_control import HardwareReturn
 from arm_control.hardware.info import parse_hardware_info
-from arm_drivers.feetech.arm import FeetechArm, JointServo
 from arm_drivers.feetech.bus import FeetechBus
 from arm_drivers.feetech.frames import ReplyCollector, sync_read_request
-from arm_drivers.feetech.hardware import FeetechHardware
-from arm_drivers.mycobot.arm import MyCobotArm
+from arm_drivers.feetech.hardware import FeetechArm, FeetechHardware, JointServo
 from arm_drivers.mycobot.frames import MyCobotCommand, reply_data
-from arm_drivers.mycobot.hardware import MyCobotHardware
+from arm_drivers.mycobot.hardware import MyCobotArm, MyCobotHardware
 from arm_drivers.serial_line import SerialLine
 from arm_gazebo.launching.leader_follower import UPDATE_RATE_HZ
 from arm_sim.bench.feetech_servos import FeetechServos

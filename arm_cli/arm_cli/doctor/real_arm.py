@@ -7,7 +7,7 @@ from arm_cli.doctor.diagnosis import Diagnosis
 from arm_drivers.errors import DriverError, PortError
 from arm_drivers.feetech.registers import MODEL
 from arm_drivers.feetech.survey import FoundServo, find_baud
-from arm_drivers.mycobot.arm import MyCobotArm
+from arm_drivers.mycobot.hardware import MyCobotArm
 from arm_drivers.serial_line import SerialLine
 
 PORT, DEVICE, VOLTAGE, LATENCY = "port", "device", "voltage", "adapter"
