@@ -14,8 +14,8 @@ from arm_sim.goals import Goal, RunningGoals
 from arm_sim.user_traceback import ends_at_the_caller
 
 if TYPE_CHECKING:
-    from arm_control.controllers.gripper import GripperResult
-    from arm_control.controllers.joint_trajectory import GoalResult, JointTolerance
+    from arm_control.controllers.gripper.goals import GripperResult
+    from arm_control.controllers.joint_trajectory.goals import GoalResult, JointTolerance
     from arm_sim.trajectory import AnyTrajectory
 
 
@@ -87,7 +87,8 @@ class ControllerHandle:
             GoalError: the controller rejects it, with the code and text of the action.
             CallError: this is not a trajectory, or not a controller that follows one.
         """
-        from arm_control.controllers.joint_trajectory import GoalRequest, JointTrajectoryController
+        from arm_control.controllers.joint_trajectory.controller import JointTrajectoryController
+        from arm_control.controllers.joint_trajectory.goals import GoalRequest
         from arm_sim.trajectory import trajectory_request
 
         core = self.core
@@ -117,7 +118,8 @@ class ControllerHandle:
             GoalError: the controller rejects it.
             CallError: this is not a gripper controller.
         """
-        from arm_control.controllers.gripper import GripperController, GripperRequest
+        from arm_control.controllers.gripper.controller import GripperController
+        from arm_control.controllers.gripper.goals import GripperRequest
 
         core = self.core
         if not isinstance(core, GripperController) or self.goals is None:
@@ -157,7 +159,7 @@ class Controllers(Mapping[str, ControllerHandle]):
         Raises:
             CallError: there is none, or the trajectory names no joints.
         """
-        from arm_control.controllers.joint_trajectory import JointTrajectoryController
+        from arm_control.controllers.joint_trajectory.controller import JointTrajectoryController
 
         is_mapping = isinstance(trajectory, Mapping)
         names = trajectory.get("joints") if is_mapping else getattr(trajectory, "joints", ())

@@ -22,8 +22,8 @@ from arm_sim.snapshots import SavedState, Snapshots
 from arm_sim.user_traceback import ends_at_the_caller, warn_caller
 
 if TYPE_CHECKING:
-    from arm_control.controllers.gripper import GripperResult
-    from arm_control.controllers.joint_trajectory import GoalResult
+    from arm_control.controllers.gripper.goals import GripperResult
+    from arm_control.controllers.joint_trajectory.goals import GoalResult
     from arm_gazebo.run.run import SimulationRun
     from arm_gazebo.world.contacts import Contact
     from arm_gazebo.world.entity_properties import EntityProperties

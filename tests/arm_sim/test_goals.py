@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from arm_control.controllers.goals import GoalOutcome
-from arm_control.controllers.joint_trajectory import ErrorCode
+from arm_control.controllers.joint_trajectory.goals import ErrorCode
 from arm_sim import CallError, GoalError, JointTrajectory, Simulation
 
 ARM, GRIPPER = "arm_controller", "gripper_action_controller"

@@ -5,7 +5,7 @@ from math import atan2, hypot, pi
 import numpy as np
 import pytest
 
-from arm_control.controllers.diff_drive import PlanarPose, PlanarTwist
+from arm_control.controllers.diff_drive.odometry import PlanarPose, PlanarTwist
 from arm_description import expand_xacro, forward_kinematics, parse_urdf, resolve_uri
 
 DRIVE = "diff_drive_base_controller"

@@ -27,10 +27,12 @@ HARDWARE_GROUP = "arm_control.hardware"
 
 _BUILT_IN = "arm_control.controllers"
 _FORWARD = f"{_BUILT_IN}.forward_command.controller"
-_GRIPPER = f"{_BUILT_IN}.gripper"
+_GRIPPER = f"{_BUILT_IN}.gripper.controller"
 _SENSORS = f"{_BUILT_IN}.sensor_broadcasters.controller"
 _CONTROLLERS = {
-    "diff_drive_controller/DiffDriveController": f"{_BUILT_IN}.diff_drive:DiffDriveController",
+    "diff_drive_controller/DiffDriveController": (
+        f"{_BUILT_IN}.diff_drive.controller:DiffDriveController"
+    ),
     "effort_controllers/GripperActionController": f"{_GRIPPER}:EffortGripperController",
     "effort_controllers/JointGroupEffortController": f"{_FORWARD}:JointGroupEffortController",
     "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster": (
@@ -48,7 +50,7 @@ _CONTROLLERS = {
         f"{_BUILT_IN}.joint_state_broadcaster.controller:JointStateBroadcaster"
     ),
     "joint_trajectory_controller/JointTrajectoryController": (
-        f"{_BUILT_IN}.joint_trajectory:JointTrajectoryController"
+        f"{_BUILT_IN}.joint_trajectory.controller:JointTrajectoryController"
     ),
     "mecanum_drive_controller/MecanumDriveController": (
         f"{_BUILT_IN}.mecanum_drive.controller:MecanumDriveController"

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from robots import crate
 
-from arm_control.controllers.joint_trajectory import GoalRequest, TrajectoryPoint, TrajectoryRequest
+from arm_control.controllers.joint_trajectory.goals import GoalRequest
+from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
 from arm_control.errors import ControllerManagerError
 from arm_gazebo.errors import RecordingError
 from arm_gazebo.recording.replay import Replay, differing

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from arm_control.controllers.joint_trajectory import GoalRequest, TrajectoryPoint, TrajectoryRequest
+from arm_control.controllers.joint_trajectory.goals import GoalRequest
+from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
 from arm_control.manager.settings import ManagerSettings
 from arm_gazebo.errors import RecordingError
 from arm_gazebo.physics.physics import Physics

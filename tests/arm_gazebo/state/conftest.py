@@ -11,8 +11,9 @@ import pytest
 
 from arm_control import ControllerContext, ControllerManager
 from arm_control.controllers.goals import GoalOutcome
-from arm_control.controllers.gripper import GripperRequest
-from arm_control.controllers.joint_trajectory import GoalRequest, TrajectoryPoint, TrajectoryRequest
+from arm_control.controllers.gripper.goals import GripperRequest
+from arm_control.controllers.joint_trajectory.goals import GoalRequest
+from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
 from arm_control.hardware.info import parse_hardware_info
 from arm_control.manager.registry import controller_class
 from arm_control.manager.switch_planner import Strictness, SwitchRequest

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from arm_control.controllers.diff_drive.odometry import PlanarTwist
-from arm_control.controllers.gripper import GripperRequest
+from arm_control.controllers.gripper.goals import GripperRequest
 from arm_control.controllers.mecanum_drive.kinematics import MecanumTwist
 from arm_sim import Simulation
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from robots import MYCOBOT_ARM
 
-from arm_control.controllers.joint_trajectory import GoalRequest
+from arm_control.controllers.joint_trajectory.goals import GoalRequest
 from arm_gazebo.recording.comparison import compare
 from arm_gazebo.recording.run_file import RecordedInput, RunFile, StateBlock
 from arm_sim import NAMED_ROBOTS, Goal, Simulation

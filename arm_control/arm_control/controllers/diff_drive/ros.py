@@ -6,12 +6,9 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from tf2_msgs.msg import TFMessage
 
-from arm_control.controllers.diff_drive import (
-    DiffDriveController,
-    DiffDriveParameters,
-    PlanarPose,
-    PlanarTwist,
-)
+from arm_control.controllers.diff_drive.controller import DiffDriveController
+from arm_control.controllers.diff_drive.odometry import PlanarPose, PlanarTwist
+from arm_control.controllers.diff_drive.parameters import DiffDriveParameters
 from arm_control.controllers.ros_adapter import ControllerAdapter
 from arm_control.controllers.ros_odometry import OdometryPublisher
 from arm_node.workarounds.message_template import MessageTemplate

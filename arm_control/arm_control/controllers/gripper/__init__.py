@@ -15,23 +15,3 @@ For the ROS half:
 
 Times are those of `update(time_s, period_s)`. Nothing here uses the wall clock.
 """
-
-from arm_control.controllers.gripper.controller import (
-    EffortGripperController,
-    GripperController,
-    GripperSink,
-    ParallelGripperController,
-    PositionGripperController,
-)
-from arm_control.controllers.gripper.goals import GripperRequest, GripperResult, GripperState
-
-__all__ = [
-    "EffortGripperController",
-    "GripperController",
-    "GripperRequest",
-    "GripperResult",
-    "GripperSink",
-    "GripperState",
-    "ParallelGripperController",
-    "PositionGripperController",
-]

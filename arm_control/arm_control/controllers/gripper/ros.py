@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 
 from control_msgs.action import GripperCommand, ParallelGripperCommand
 
-from arm_control.controllers.gripper import GripperController, GripperRequest, GripperResult
+from arm_control.controllers.gripper.controller import GripperController
+from arm_control.controllers.gripper.goals import GripperRequest, GripperResult
 from arm_control.controllers.gripper.parameters import GripperParameters
 from arm_control.controllers.ros_action import ControllerAction
 from arm_control.controllers.ros_adapter import ControllerAdapter

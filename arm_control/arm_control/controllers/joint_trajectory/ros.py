@@ -14,17 +14,9 @@ from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from arm_control.controllers.joint_trajectory import (
-    ControllerState,
-    Feedback,
-    GoalRequest,
-    GoalResult,
-    JointTolerance,
-    JointTrajectoryController,
-    JointTrajectoryParameters,
-    QueriedState,
-    StateLayout,
-)
+from arm_control.controllers.joint_trajectory.controller import JointTrajectoryController
+from arm_control.controllers.joint_trajectory.goals import GoalRequest, GoalResult, JointTolerance
+from arm_control.controllers.joint_trajectory.parameters import JointTrajectoryParameters
 from arm_control.controllers.joint_trajectory.profiles import QUANTITIES
 from arm_control.controllers.joint_trajectory.ros_serialized_goals import (
     TakenGoal,
@@ -34,6 +26,12 @@ from arm_control.controllers.joint_trajectory.ros_serialized_goals import (
 from arm_control.controllers.joint_trajectory.serialized import (
     SerializedTrajectoryError,
     read_trajectory,
+)
+from arm_control.controllers.joint_trajectory.state import (
+    ControllerState,
+    Feedback,
+    QueriedState,
+    StateLayout,
 )
 from arm_control.controllers.joint_trajectory.trajectory import FIELDS
 from arm_control.controllers.ros_action import ControllerAction

@@ -26,8 +26,8 @@ from rclpy.type_support import check_for_type_support
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from unique_identifier_msgs.msg import UUID
 
-from arm_control.controllers.joint_trajectory import TrajectoryRequest
 from arm_control.controllers.joint_trajectory.serialized import read_trajectory
+from arm_control.controllers.joint_trajectory.trajectory import TrajectoryRequest
 from arm_node.workarounds.switch import is_on
 
 MIDDLEWARE = ("librmw_implementation.so", "librmw_fastrtps_cpp.so")

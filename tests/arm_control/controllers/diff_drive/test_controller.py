@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 
 from arm_control import ControllerContext, ControllerManager, SwitchRequest
-from arm_control.controllers.diff_drive import DiffDriveController, PlanarPose, PlanarTwist
+from arm_control.controllers.diff_drive.controller import DiffDriveController
+from arm_control.controllers.diff_drive.odometry import PlanarPose, PlanarTwist
 from arm_control.controllers.forward_command.controller import (
     ForwardCommandController,
     ForwardCommandParameters,

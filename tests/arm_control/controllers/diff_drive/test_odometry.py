@@ -7,7 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arm_control.controllers.diff_drive import Odometry, PlanarPose, PlanarTwist, WheelGeometry
+from arm_control.controllers.diff_drive.odometry import (
+    Odometry,
+    PlanarPose,
+    PlanarTwist,
+    WheelGeometry,
+)
 
 angles = st.floats(-20.0, 20.0)
 ways = st.floats(-10.0, 10.0)

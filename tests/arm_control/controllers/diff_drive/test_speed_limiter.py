@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arm_control.controllers.diff_drive import SpeedLimiter, SpeedLimits
+from arm_control.controllers.diff_drive.parameters import SpeedLimiter, SpeedLimits
 from arm_control.errors import ParameterError
 
 PERIOD_S = 0.01

@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from arm_control import ControllerContext, ControllerManager
-from arm_control.controllers.gripper import GripperController, GripperRequest, GripperResult
+from arm_control.controllers.gripper.controller import GripperController
+from arm_control.controllers.gripper.goals import GripperRequest, GripperResult
 from arm_control.manager.registry import controller_class
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_control.testing import fake_hardware

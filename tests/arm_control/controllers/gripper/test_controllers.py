@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from arm_control.controllers.controller import ControllerContext
-from arm_control.controllers.gripper import ParallelGripperController
+from arm_control.controllers.gripper.controller import ParallelGripperController
 from arm_control.errors import ControllerManagerError, ParameterError
 
 POSITION = "position_controllers/GripperActionController"

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from arm_control.controllers.goals import GoalOutcome
-from arm_control.controllers.gripper import GripperRequest, GripperResult
+from arm_control.controllers.gripper.goals import GripperRequest, GripperResult
 
 
 def test_a_goal_ends_when_the_joint_is_there(rig: Any) -> None:

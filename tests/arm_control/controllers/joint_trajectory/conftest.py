@@ -8,16 +8,10 @@ import numpy as np
 import pytest
 
 from arm_control.controllers.controller import ControllerContext
-from arm_control.controllers.joint_trajectory import (
-    ControllerState,
-    Feedback,
-    GoalRequest,
-    GoalResult,
-    JointTrajectoryController,
-    StateLayout,
-    TrajectoryPoint,
-    TrajectoryRequest,
-)
+from arm_control.controllers.joint_trajectory.controller import JointTrajectoryController
+from arm_control.controllers.joint_trajectory.goals import GoalRequest, GoalResult
+from arm_control.controllers.joint_trajectory.state import ControllerState, Feedback, StateLayout
+from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
 from arm_control.controllers.loaned_interfaces import LoanedInterfaces
 from arm_control.testing import fake_hardware
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from arm_control.controllers.controller import ControllerContext
-from arm_control.controllers.joint_trajectory import JointTrajectoryController
+from arm_control.controllers.joint_trajectory.controller import JointTrajectoryController
 from arm_control.controllers.joint_trajectory.goals import ErrorCode, GoalOutcome
 from arm_control.errors import ControllerError
 

@@ -10,14 +10,10 @@ from arm_control.controllers.forward_command.controller import (
     JointGroupPositionController,
     PositionGroupParameters,
 )
-from arm_control.controllers.joint_trajectory import (
-    GoalRequest,
-    GoalResult,
-    JointTrajectoryController,
-    JointTrajectoryParameters,
-    TrajectoryPoint,
-    TrajectoryRequest,
-)
+from arm_control.controllers.joint_trajectory.controller import JointTrajectoryController
+from arm_control.controllers.joint_trajectory.goals import GoalRequest, GoalResult
+from arm_control.controllers.joint_trajectory.parameters import JointTrajectoryParameters
+from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
 from arm_control.errors import ControllerManagerError
 from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_control.parameters import build_parameters

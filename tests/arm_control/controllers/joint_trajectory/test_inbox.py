@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from arm_control.controllers.joint_trajectory import GoalRequest
 from arm_control.controllers.joint_trajectory.goals import (
     GoalCancel,
+    GoalRequest,
     Inbox,
     TrajectoryReplacement,
     not_running,

@@ -5,10 +5,8 @@ from typing import Any
 
 import pytest
 
-from arm_control.controllers.joint_trajectory import (
-    JointTrajectoryController,
-    JointTrajectoryParameters,
-)
+from arm_control.controllers.joint_trajectory.controller import JointTrajectoryController
+from arm_control.controllers.joint_trajectory.parameters import JointTrajectoryParameters
 from arm_control.errors import ControllerError, ParameterError
 from arm_control.parameters import build_parameters, specs_of
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from arm_control.controllers.joint_trajectory import Progress
+from arm_control.controllers.joint_trajectory.state import Progress
 
 MakeRig = Callable[..., Any]
 

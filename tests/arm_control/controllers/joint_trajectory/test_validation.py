@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from arm_control.controllers.joint_trajectory import JointTrajectoryParameters
 from arm_control.controllers.joint_trajectory.goals import ErrorCode
+from arm_control.controllers.joint_trajectory.parameters import JointTrajectoryParameters
 from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
 from arm_control.controllers.joint_trajectory.validation import find_fault
 

@@ -11,7 +11,7 @@ from arm_control.controllers.forward_command.controller import (
     ForwardCommandController,
     ForwardCommandParameters,
 )
-from arm_control.controllers.joint_trajectory import JointTrajectoryController
+from arm_control.controllers.joint_trajectory.controller import JointTrajectoryController
 from arm_control.controllers.pid_controller.controller import STATE_FIELDS, PidController, PidTerms
 from arm_control.errors import ControllerError, ControllerManagerError, ParameterError
 from arm_control.manager.switch_planner import Strictness

@@ -5,16 +5,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from arm_control.controllers.joint_trajectory import (
-    ErrorCode,
+from arm_control.controllers.joint_trajectory.goals import ErrorCode, GoalResult, JointTolerance
+from arm_control.controllers.joint_trajectory.serialized import read_trajectory
+from arm_control.controllers.joint_trajectory.state import (
     Feedback,
-    GoalResult,
-    JointTolerance,
     Progress,
     QueriedState,
     StateLayout,
 )
-from arm_control.controllers.joint_trajectory.serialized import read_trajectory
 
 pytestmark = pytest.mark.ros
 
