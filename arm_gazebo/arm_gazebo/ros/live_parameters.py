@@ -1,12 +1,12 @@
 """Parameters of the simulation's node that take effect while it runs; two start something."""
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import TimeoutError as FutureTimeoutError
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
@@ -18,16 +18,12 @@ from arm_gazebo.errors import FaultError, RecordingError
 from arm_gazebo.faults.fault import USAGE, Fault, read_fault
 from arm_gazebo.faults.injector import FaultInjector
 from arm_gazebo.run.run import SimulationRun
-from arm_node.parameter_values import ParameterValueError, read_texts
+from arm_node.parameter_values import ParameterValueError, read_parameter, read_texts
 from arm_node.parameters import declare, take_other_notations
+from arm_node.setting import Setting
 
 if TYPE_CHECKING:
     from arm_gazebo.recording.recorder import RunRecorder
-from collections.abc import Callable
-from typing import Any
-
-from arm_node.parameter_values import read_parameter
-from arm_node.setting import Setting
 
 
 def follow_setting(node: Node, setting: Setting, apply: Callable[[Any], object]) -> None:

@@ -2,23 +2,24 @@
 
 import os
 from array import array
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-from arm_node.parameter_values import ParameterValueError, read_numbers, read_text, read_words
-from arm_node.setting import Parameters, read_settings, setting
-
-if TYPE_CHECKING:
-    from arm_description.urdf.robot import Pose
-from dataclasses import replace
 
 from arm_gazebo.mjcf.memory_limit import SPAWN_LIMIT, WORLD_LIMIT, MemoryLimit
 from arm_node.parameter_values import (
     NumberReader,
+    ParameterValueError,
     read_integer,
     read_non_negative,
+    read_numbers,
+    read_text,
+    read_words,
 )
+from arm_node.setting import Parameters, read_settings, setting
+
+if TYPE_CHECKING:
+    from arm_description.urdf.robot import Pose
 
 
 def _read_description(value: object) -> str:

@@ -9,33 +9,22 @@ it.
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, cast
 
 from launch_py.errors import LaunchError, NodeParameterError
 from launch_py.near_names import describe_missing_file
 from launch_py.plan.steps import GeneratedFile
-from launch_py.ros.parameters import ParameterValue, check_depth
+from launch_py.ros.parameters import BARE, NODE_KEY, ParameterValue, Value, check_depth, dump_value
 from launch_py.ros.substitution_parser import parse_substitutions
 from launch_py.substitution import LaunchScope, Substitution, Text, perform_text
 
 if TYPE_CHECKING:
     import yaml
-
-
-import json
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import TYPE_CHECKING
-
-from launch_py.ros.parameters import NODE_KEY, Value, dump_value
-
-if TYPE_CHECKING:
-    import yaml
-
 
 __all__ = ["Parameter", "ParameterFile", "ParameterValue"]
 
@@ -188,8 +177,6 @@ def _read(text: str) -> yaml.Node:
     return yaml.ScalarNode(tag, text)
 
 
-PLAIN = re.compile(r"[\w.+()-]+", re.ASCII)
-"""Texts that rcl may read as something else than a text; others can be put into quotes."""
 STRING_TAG = "tag:yaml.org,2002:str"
 
 Section = tuple[str, dict[str, str]]
@@ -372,4 +359,4 @@ def _leaf(node: yaml.Node) -> str:
         raise _FormError
     text = str(node.value)
     is_text = node.tag == STRING_TAG and node.style not in ("|", ">")
-    return text if PLAIN.fullmatch(text) and not is_text else dump_value(text)
+    return text if BARE.fullmatch(text) and not is_text else dump_value(text)

@@ -10,24 +10,21 @@ is never met: the probe writes {"id": n, "seen": nodes} whenever the nodes on th
 from __future__ import annotations
 
 import importlib
+import json
 import os
-from collections.abc import Iterable
+import queue
+import sys
+import threading
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from launch_py.fast_dds.participants import PID_BITS, domain_of, find_ports
 from launch_py.fast_dds.shared_memory import hide, segments_of
+from launch_py.standard_streams import library_output_on_stderr
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-
-import json
-import queue
-import sys
-import threading
-from collections.abc import Callable, Mapping
-
-from launch_py.standard_streams import library_output_on_stderr
 
 PREFIX_BYTES = 12
 FAST_DDS = bytes((0x01, 0x0F))
