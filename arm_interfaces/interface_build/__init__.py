@@ -8,6 +8,6 @@ The steps from a ``.msg`` file to an importable module:
 4. ``lazy_imports``: importing a package imports only the classes that are used.
 5. ``share_folder``: the definitions and the ament index markers are laid out.
 
-``package_build`` orders these steps for one package, ``parallel_build`` builds all packages on all
-cores, ``command`` and ``backend`` connect the build to setuptools and pip.
+``package_build`` orders these steps and runs them for all packages on all cores, ``command`` and
+``backend`` connect the build to setuptools and pip.
 """

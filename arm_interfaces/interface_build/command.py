@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from typing import TextIO
 
 from setuptools.command.build import build
 from setuptools.command.build_ext import build_ext
@@ -9,10 +10,32 @@ from setuptools.command.egg_info import egg_info
 
 from interface_build import share_folder
 from interface_build.interface_package import InterfacePackage, find_packages
-from interface_build.progress import BuildProgress
 from interface_build.project import DEFINITIONS, read_project
-from interface_build.scratch import scratch_folder
 from interface_build.toolchain import find_toolchain
+from interface_build.work_folder import scratch_folder
+
+
+class BuildProgress:
+    """Writes one line per step to a stream; pip shows them with ``-v``."""
+
+    def __init__(self, name: str, stream: TextIO) -> None:
+        """Write to ``stream``, flushing each line so that it passes a pipe immediately.
+
+        Args:
+            name: the distribution's name, which begins each line.
+            stream: where to write.
+        """
+        self._name = name
+        self._stream = stream
+
+    def say(self, sentence: str) -> None:
+        """Write a line."""
+        self._stream.write(f"{self._name}: {sentence}\n")
+        self._stream.flush()
+
+    def report(self, label: str, done: int, total: int) -> None:
+        """Write the completed step and the percentage."""
+        self.say(f"[{100 * done // total:3d} %] {label}")
 
 
 class Build(build):
@@ -58,8 +81,7 @@ def _build_packages(packages: tuple[InterfacePackage, ...], target: Path) -> Non
     """Build all packages, each into its folder below ``target``."""
     # The generators are only installed for a wheel, but setuptools loads this module for an sdist
     # too.
-    from interface_build.package_build import PackageBuild
-    from interface_build.parallel_build import build_all
+    from interface_build.package_build import PackageBuild, build_all
     from interface_build.ros_prefix import find_ros_prefix
     from interface_build.work_folder import WorkFolder
 

@@ -133,9 +133,7 @@ def test_a_stage_starts_when_those_that_it_follows_are_over(
         RecordedBuild(package_build, file, "used"),
     ]
     reported: list[tuple[int, int]] = []
-    build_module("parallel_build").build_all(
-        builds, lambda _label, done, total: reported.append((done, total))
-    )
+    package_build.build_all(builds, lambda _label, done, total: reported.append((done, total)))
     order = file.read_text().splitlines()
     steps = [f"{package} {step}" for package in ("used", "user") for step in ("a", "b", "first")]
     assert sorted(order) == steps
@@ -151,7 +149,7 @@ def test_packages_that_use_each_other_are_named(build_module: Any, tmp_path: Pat
         RecordedBuild(package_build, tmp_path / "order", "other", uses="one"),
     ]
     with pytest.raises(build_module("errors").BuildError, match="in a circle: one, other"):
-        build_module("parallel_build").build_all(builds, lambda *_: None)
+        package_build.build_all(builds, lambda *_: None)
 
 
 def test_largest_package_is_built_first(packages: Any) -> None:
@@ -213,7 +211,7 @@ def test_compiler_error_is_shown(build_module: Any, tmp_path: Path) -> None:
 
 def test_progress_tells_how_far_the_build_is(build_module: Any) -> None:
     stream = io.StringIO()
-    build_module("progress").BuildProgress("arm_interfaces", stream).report("linked x", 3, 4)
+    build_module("command").BuildProgress("arm_interfaces", stream).report("linked x", 3, 4)
     assert stream.getvalue() == "arm_interfaces: [ 75 %] linked x\n"
 
 
