@@ -1,11 +1,13 @@
-"""What the ROS halves of controllers share: the adapter to a node, and times as messages."""
+"""What the ROS halves of controllers share: the adapter to a node; readings, times as messages."""
 
 import logging
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Generic, TypeVar
 
+import numpy as np
 from builtin_interfaces.msg import Duration, Time
+from numpy.typing import NDArray
 from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -17,7 +19,9 @@ from arm_control.controllers.controller import NOT_ACTIVE, Controller
 from arm_control.errors import ControllerError
 from arm_control.loop.clock import Throttle
 from arm_control.loop.control_loop import ControlLoop
+from arm_control.loop.outbox import Outbox
 from arm_control.loop.ros_executor_bridge import run_on_executor
+from arm_node.workarounds.message_template import MessageTemplate, raw_sender
 
 SHORTEST_S, LONGEST_S = -(2.0**31), 2.0**31 - 1.0
 """The range of a Duration message."""
@@ -46,6 +50,46 @@ def time_message(time_s: float) -> Time:
     """Return a time as a stamp."""
     seconds, nanoseconds = divmod(round(time_s * 1e9), 1_000_000_000)
     return Time(sec=seconds, nanosec=nanoseconds)
+
+
+class ReadingPublisher:
+    """Writes readings into one serialised message; see `ReadingSink`. Loop thread only.
+
+    Args:
+        publisher: a publisher of the message's type.
+        message: a message with its final names, frame and covariances.
+        paths: the fields that receive the numbers of a reading, in order.
+        first: how many numbers at the start of a reading are not part of the message.
+        outbox: sends the messages of a tick; None sends each at once.
+    """
+
+    def __init__(
+        self,
+        publisher: Publisher,
+        message: Any,
+        paths: Sequence[str],
+        first: int = 0,
+        outbox: Outbox | None = None,
+    ) -> None:
+        self._publisher = publisher
+        self._send = raw_sender(publisher)
+        self._outbox = outbox
+        self._template = MessageTemplate(message)
+        self._where = np.concatenate([self._template.indices(path) for path in paths])
+        self._shown = slice(first, first + len(self._where))
+
+    def wanted(self) -> bool:
+        """Return whether there is a subscriber now; takes about 1 us."""
+        return self._publisher.get_subscription_count() > 0
+
+    def publish(self, time_s: float, reading: NDArray[np.float64]) -> None:
+        """Publish a reading, shape (n,), stamped with the time of its state."""
+        self._template.set_stamps(round(time_s * 1e9))
+        self._template.float64[self._where] = reading[self._shown]
+        if self._outbox is None:
+            self._template.publish(self._publisher)
+        else:
+            self._outbox.put(self._send, self._template.to_bytes())
 
 
 ControllerT = TypeVar("ControllerT", bound=Controller[Any])

@@ -9,7 +9,7 @@ from tf2_msgs.msg import TFMessage
 from arm_control.controllers.diff_drive.controller import DiffDriveController
 from arm_control.controllers.diff_drive.odometry import PlanarPose, PlanarTwist
 from arm_control.controllers.diff_drive.parameters import DiffDriveParameters
-from arm_control.controllers.ros_adapter import ControllerAdapter
+from arm_control.controllers.ros_adapter import ControllerAdapter, seconds_of
 from arm_control.controllers.ros_odometry import OdometryPublisher
 from arm_node.workarounds.message_template import MessageTemplate
 
@@ -38,9 +38,8 @@ class DiffDriveAdapter(ControllerAdapter[DiffDriveController]):
     def _take(self, message: TwistStamped) -> None:
         if not self.takes_commands("~/cmd_vel"):
             return
-        stamp = message.header.stamp
-        stamp_s = stamp.sec + stamp.nanosec * 1e-9
         twist = PlanarTwist(message.twist.linear.x, message.twist.angular.z)
+        stamp_s = seconds_of(message.header.stamp)
         self.warn_dropped("command", self.controller.offer(twist, stamp_s or None))
 
 

@@ -4,10 +4,6 @@ import math
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
-
-import numpy as np
-from numpy.typing import NDArray
 
 from arm_control.controllers.controller import (
     Controller,
@@ -15,6 +11,7 @@ from arm_control.controllers.controller import (
     InterfaceConfiguration,
     ReturnType,
 )
+from arm_control.controllers.sensor_broadcasters.controller import ReadingSink
 from arm_control.errors import ControllerError
 from arm_control.parameters import parameter, parameter_groups
 from arm_control.run_inputs import run_input
@@ -60,18 +57,6 @@ class GpioCommandParameters:
     )
 
 
-class GpioStateSink(Protocol):
-    """Receives the states on the loop thread."""
-
-    def wanted(self) -> bool:
-        """Return whether there is a subscriber now."""
-        ...
-
-    def publish(self, time_s: float, states: NDArray[np.float64]) -> None:
-        """Publish the states, shape (n,), GPIO by GPIO as in `GpioCommandController.shown`."""
-        ...
-
-
 class GpioCommandController(Controller[GpioCommandParameters]):
     """Writes commands to the interfaces of GPIOs, and publishes states in every cycle.
 
@@ -90,7 +75,7 @@ class GpioCommandController(Controller[GpioCommandParameters]):
     def __init__(self, context: ControllerContext) -> None:
         super().__init__(context)
         self.shown: Mapping[str, tuple[str, ...]] = {}
-        self.sink: GpioStateSink | None = None
+        self.sink: ReadingSink | None = None
         self._command_names: tuple[str, ...] = ()
         self._waiting: deque[dict[int, float]] = deque(maxlen=MAX_WAITING)
 

@@ -12,9 +12,8 @@ from arm_control.controllers.joint_state_broadcaster.controller import (
     JointStateBroadcasterParameters,
     JointStateLayout,
 )
-from arm_control.controllers.ros_adapter import ControllerAdapter
+from arm_control.controllers.ros_adapter import ControllerAdapter, ReadingPublisher
 from arm_control.loop.outbox import Outbox
-from arm_node.workarounds.message_template import MessageTemplate, raw_sender
 
 
 class JointStateBroadcasterAdapter(ControllerAdapter[JointStateBroadcaster]):
@@ -32,27 +31,6 @@ class JointStateBroadcasterAdapter(ControllerAdapter[JointStateBroadcaster]):
         )
 
 
-class _StampedArray:
-    """A message of fixed shape whose float64 values are one flat array. Loop thread only."""
-
-    def __init__(
-        self,
-        publisher: Publisher,
-        template: MessageTemplate,
-        where: NDArray[np.intp],
-        outbox: Outbox,
-    ) -> None:
-        self._send = raw_sender(publisher)
-        self._outbox = outbox
-        self._template = template
-        self._where = where
-
-    def publish(self, stamp_ns: int, values: NDArray[np.float64]) -> None:
-        self._template.set_stamps(stamp_ns)
-        self._template.float64[self._where] = values
-        self._outbox.put(self._send, self._template.to_bytes())
-
-
 class _JointStateBroadcastPublisher:
     """Publishes joint states as sensor_msgs and control_msgs; see `JointStateSink`."""
 
@@ -67,8 +45,8 @@ class _JointStateBroadcastPublisher:
         self._joint_states = joint_states
         self._dynamic_joint_states = dynamic_joint_states
         self._frame_id = frame_id
-        self._joints: _StampedArray | None = None
-        self._components: _StampedArray | None = None
+        self._joints: ReadingPublisher | None = None
+        self._components: ReadingPublisher | None = None
 
     def open(self, layout: JointStateLayout) -> None:
         """Serialise a message of this layout once; later only its numbers are written."""
@@ -81,23 +59,20 @@ class _JointStateBroadcastPublisher:
         self, time_s: float, joints: NDArray[np.float64], components: NDArray[np.float64]
     ) -> None:
         """Publish one state."""
-        stamp_ns = round(time_s * 1e9)
         if self._joints is not None:
-            self._joints.publish(stamp_ns, joints)
+            self._joints.publish(time_s, joints)
         if self._components is not None:
-            self._components.publish(stamp_ns, components)
+            self._components.publish(time_s, components)
 
-    def _open_joints(self, layout: JointStateLayout) -> _StampedArray:
+    def _open_joints(self, layout: JointStateLayout) -> ReadingPublisher:
         values = [0.0] * len(layout.joints)
         message = JointState(
             name=list(layout.joints), position=values, velocity=values, effort=values
         )
         message.header.frame_id = self._frame_id
-        template = MessageTemplate(message)
-        where = np.concatenate([template.indices(quantity) for quantity in QUANTITIES])
-        return _StampedArray(self._joint_states, template, where, self._outbox)
+        return ReadingPublisher(self._joint_states, message, QUANTITIES, outbox=self._outbox)
 
-    def _open_components(self, layout: JointStateLayout, publisher: Publisher) -> _StampedArray:
+    def _open_components(self, layout: JointStateLayout, publisher: Publisher) -> ReadingPublisher:
         message = DynamicJointState(
             joint_names=[name for name, _ in layout.components],
             interface_values=[
@@ -106,6 +81,5 @@ class _JointStateBroadcastPublisher:
             ],
         )
         message.header.frame_id = self._frame_id
-        template = MessageTemplate(message)
-        where = template.indices("interface_values[*].values")
-        return _StampedArray(publisher, template, where, self._outbox)
+        paths = ("interface_values[*].values",)
+        return ReadingPublisher(publisher, message, paths, outbox=self._outbox)

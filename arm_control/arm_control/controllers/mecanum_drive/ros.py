@@ -13,7 +13,7 @@ from arm_control.controllers.mecanum_drive.controller import (
     MecanumDriveParameters,
 )
 from arm_control.controllers.mecanum_drive.kinematics import Array, MecanumOdometry, MecanumTwist
-from arm_control.controllers.ros_adapter import ControllerAdapter
+from arm_control.controllers.ros_adapter import ControllerAdapter, seconds_of
 from arm_control.controllers.ros_odometry import OdometryPublisher
 from arm_node.workarounds.message_template import MessageTemplate
 
@@ -44,9 +44,7 @@ class MecanumDriveAdapter(ControllerAdapter[MecanumDriveController]):
     def _take_reference(self, message: TwistStamped) -> None:
         if not self.takes_commands("~/reference"):
             return
-        stamp = message.header.stamp
-        stamp_s = stamp.sec + stamp.nanosec * 1e-9
-        twist = message.twist
+        stamp_s, twist = seconds_of(message.header.stamp), message.twist
         reference = MecanumTwist(twist.linear.x, twist.linear.y, twist.angular.z)
         self.warn_dropped("reference", self.controller.offer(reference, stamp_s or None))
 
