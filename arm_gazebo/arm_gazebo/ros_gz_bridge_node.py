@@ -12,6 +12,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from arm_control.manager.node_arguments import split_ros_arguments
 from arm_gazebo.errors import GazeboError
 from arm_node.parameter_values import ParameterValueError, read_text
 from arm_node.task import run_task
@@ -42,19 +43,17 @@ class Bridged:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run until told to stop; return the exit code."""
     program, *words = sys.argv if argv is None else argv
-    at = words.index("--ros-args") if "--ros-args" in words else len(words)
+    own, ros = split_ros_arguments(words)
 
     def task(node: "Node", process: "NodeProcess") -> int:
         from arm_node.parameters import declare
 
         file = declare(node, "config_file", "", read_text, "YAML file with the topics to bridge")
-        topics = [parse(word) for word in words[:at] if not word.startswith("-")]
+        topics = [parse(word) for word in own if not word.startswith("-")]
         bridge(node, process, [*topics, *(read_config(Path(file)) if file else ())])
         return 0
 
-    return run_task(
-        "ros_gz_bridge", task, [program, *words[at:]], (GazeboError, ParameterValueError)
-    )
+    return run_task("ros_gz_bridge", task, [program, *ros], (GazeboError, ParameterValueError))
 
 
 def parse(word: str) -> Bridged:

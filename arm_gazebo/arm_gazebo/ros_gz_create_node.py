@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from arm_control.manager.node_arguments import split_ros_arguments
 from arm_gazebo.errors import GazeboError
 from arm_node.parameter_values import ParameterValueError, read_text
 from arm_node.process import EXIT_FAILED, EXIT_OK
@@ -24,15 +25,15 @@ RESULT_OK = 1
 def main(argv: Sequence[str] | None = None) -> int:
     """Spawn the entity; return 0, or 1 if the simulation refuses, or 2 for invalid arguments."""
     program, *words = sys.argv if argv is None else argv
-    at = words.index("--ros-args") if "--ros-args" in words else len(words)
-    options = parser().parse_args(words[:at])
+    own, ros = split_ros_arguments(words)
+    options = parser().parse_args(own)
     if not (options.topic or options.file or options.string or options.param):
         parser().error("give what to create: -topic TOPIC, -file FILE, -string TEXT or -param NAME")
 
     def task(node: "Node", process: "NodeProcess") -> int:
         return create(node, process, options)
 
-    return run_task("ros_gz_sim", task, [program, *words[at:]], (GazeboError, ParameterValueError))
+    return run_task("ros_gz_sim", task, [program, *ros], (GazeboError, ParameterValueError))
 
 
 def parser() -> argparse.ArgumentParser:

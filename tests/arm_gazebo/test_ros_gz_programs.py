@@ -70,3 +70,10 @@ def test_create_reports_what_is_missing(capsys):
     with pytest.raises(SystemExit):
         main(["create", "-name", "arm"])
     assert "give what to create: -topic TOPIC, -file FILE" in capsys.readouterr().err
+
+
+def test_create_reads_what_follows_the_ros_arguments(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["create", "-file", "a.urdf", "--ros-args", "-r", "a:=b", "--", "-x", "far"])
+    assert ended.value.code == 2
+    assert "argument -x/--x: invalid float value: 'far'" in capsys.readouterr().err
