@@ -13,8 +13,8 @@ from typing import Any, cast
 
 import numpy as np
 
+from arm_sim import Simulation
 from arm_sim.errors import ArmSimError
-from arm_sim.simulation import Simulation
 
 Value = bool | int | float | str
 Values = Mapping[str, Value]

@@ -10,7 +10,7 @@ from arm_gazebo.batch.choice import SERIAL_COPIES
 from arm_sim.gym import BatchEnv, Observation, Task
 
 COPIES = SERIAL_COPIES + 1
-STEPS = 60
+STEPS = 32
 OPTIONS = {"simulation": {"arguments": {"camera": "none"}}, "tolerance_m": 0.12}
 """A tolerance that random motions meet, so that episodes end both ways."""
 
