@@ -16,23 +16,6 @@ if TYPE_CHECKING:
     from arm_gazebo.rendering.renderer import Renderer
 
 
-class DepthNoise:
-    """Noise of distances. One thread.
-
-    Like colour noise, it depends only on the seed, the camera's name and the frame's number.
-    """
-
-    def __init__(self, sensor: CameraSensor, seed: int) -> None:
-        self._key = (zlib.crc32(sensor.name.encode()), seed & (2**64 - 1))
-        self._mean = np.float32(sensor.noise_mean)
-        self._stddev = np.float32(sensor.noise_stddev)
-
-    def add_to(self, depth: NDArray[np.float32], frame_number: int) -> None:
-        """Add a frame's noise in m to distances (height, width), in place."""
-        random = np.random.default_rng((*self._key, frame_number))
-        depth += self._mean + self._stddev * random.standard_normal(depth.shape, dtype=np.float32)
-
-
 SPARE_SAMPLES = 1 << 20
 """Extra length of the bank beyond one image, which is the number of different noise images."""
 FULL_RANGE = 255.0
@@ -56,7 +39,7 @@ class NoiseBank:
         import cv2
 
         self._add, self._subtract = cv2.add, cv2.subtract
-        self._key = (zlib.crc32(sensor.name.encode()), seed & (2**64 - 1))
+        self._key = _noise_key(sensor, seed)
         size = sensor.width * sensor.height * 3
         noise = np.random.default_rng(self._key).standard_normal(
             size + SPARE_SAMPLES, dtype=np.float32
@@ -81,17 +64,23 @@ class NoiseBank:
         return int(mixed[0]) % SPARE_SAMPLES
 
 
+def _noise_key(sensor: CameraSensor, seed: int) -> tuple[int, int]:
+    """Return what distinguishes the noise of a camera in a run."""
+    return zlib.crc32(sensor.name.encode()), seed & (2**64 - 1)
+
+
 class CameraNoise:
     """The noise of one camera's pictures and distances; nothing without noise. One thread.
 
-    What is not drawn costs nothing: a bank is computed with the first picture.
+    It depends only on the seed, the camera's name and the frame's number. What is not drawn costs
+    nothing: a bank is computed with the first picture.
     """
 
     def __init__(self, sensor: CameraSensor, seed: int) -> None:
         self._sensor, self._seed = sensor, seed
         self._is_silent = sensor.noise_stddev == 0.0 and sensor.noise_mean == 0.0
         self._bank: NoiseBank | None = None
-        self._depth = DepthNoise(sensor, seed)
+        self._key = _noise_key(sensor, seed)
 
     def add_to_picture(self, picture: NDArray[np.uint8], frame_number: int) -> None:
         """Add a frame's noise to a picture (height, width, 3), in place."""
@@ -102,7 +91,12 @@ class CameraNoise:
     def add_to_depth(self, depth: NDArray[np.float32], frame_number: int) -> None:
         """Add a frame's noise in m to distances (height, width), in place."""
         if not self._is_silent:
-            self._depth.add_to(depth, frame_number)
+            random = np.random.default_rng((*self._key, frame_number))
+            mean, stddev = (
+                np.float32(self._sensor.noise_mean),
+                np.float32(self._sensor.noise_stddev),
+            )
+            depth += mean + stddev * random.standard_normal(depth.shape, dtype=np.float32)
 
 
 class FrameDrawing:
