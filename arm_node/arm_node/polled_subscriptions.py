@@ -15,7 +15,22 @@ from rclpy.qos import QoSProfile
 from rclpy.subscription import Subscription
 
 
-class PolledSubscriptions(CallbackGroup):
+class Unserved(CallbackGroup):
+    """The group of subscriptions and events that the executor must not serve."""
+
+    def can_execute(self, entity: Any) -> bool:
+        """Return False."""
+        return False
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Return False, for an entity that was ready when it came into the group."""
+        return False
+
+    def ending_execution(self, entity: Any) -> None:
+        """Do nothing."""
+
+
+class PolledSubscriptions(Unserved):
     """Creates subscriptions of a node that its executor does not serve.
 
     They have no QoS events: Fast DDS wakes a thread that waits for events while messages are
@@ -49,17 +64,6 @@ class PolledSubscriptions(CallbackGroup):
                 if taken is None:
                     return
                 yield taken
-
-    def can_execute(self, entity: Any) -> bool:
-        """Return False: the executor must not serve it."""
-        return False
-
-    def beginning_execution(self, entity: Any) -> bool:
-        """Allow it."""
-        return True
-
-    def ending_execution(self, entity: Any) -> None:
-        """Do nothing."""
 
 
 def _not_called(_: bytes) -> None:

@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
-from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.executors import Executor, SingleThreadedExecutor
@@ -21,6 +20,7 @@ from arm_control.loop.lock_step import NS_PER_S, LockStep
 from arm_control.loop.supervision import failure_of
 from arm_gazebo.ros.topic import message_class
 from arm_node.executor_thread import ExecutorThread
+from arm_node.polled_subscriptions import Unserved
 
 NODE_NAME = "_lock_step"
 """Name of the node that receives the answers."""
@@ -66,7 +66,7 @@ class LockStepPartners:
         self._sought = {name: _absolute(name, node) for name in lock_step.partners}
         self._unusable: set[str] = set()
         self._commands: tuple[Subscription, ...] = ()
-        self._taken = _TakenByTheLoop()
+        self._taken_by_the_loop = Unserved()
         # The fewer entities, the faster rclpy's executor.
         self._listener = Node(
             NODE_NAME,
@@ -114,11 +114,11 @@ class LockStepPartners:
         nodes = [node for node in self._executor.get_nodes() if node is not self._node]
         commands = tuple(s for node in nodes for s in node.subscriptions if _is_simple(s))
         for subscription in commands:
-            subscription.callback_group = self._taken
+            subscription.callback_group = self._taken_by_the_loop
             # Fast DDS wakes a thread that waits for events while messages are pending.
             events: Any = subscription.event_handlers
             for event in events:
-                event.callback_group = self._taken
+                event.callback_group = self._taken_by_the_loop
         self._commands = commands
 
     def _follow(self, name: str, topic: str, type_name: str, offered: QoSProfile) -> bool:
@@ -151,21 +151,6 @@ class LockStepPartners:
         if topic not in self._unusable:
             self._unusable.add(topic)
             logger.error("lock-step with %s is not possible: %s", topic, reason)
-
-
-class _TakenByTheLoop(CallbackGroup):
-    """The group of subscriptions that the executor must not serve."""
-
-    def can_execute(self, entity: Any) -> bool:
-        """Return False."""
-        return False
-
-    def beginning_execution(self, entity: Any) -> bool:
-        """Return False."""
-        return False
-
-    def ending_execution(self, entity: Any) -> None:
-        """Do nothing."""
 
 
 def _is_simple(subscription: Subscription) -> bool:
