@@ -18,11 +18,8 @@ from arm_cli.errors import ArmCliError
 from arm_node.printable import printable, printable_message
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from arm_description.package_search import PackagePlace
-    from arm_gazebo.check.description import DescriptionCheck
-    from arm_gazebo.check.world import WorldCheck
+    from arm_gazebo.check.description import CheckResult
 
 EXIT_UNUSABLE = 1
 
@@ -71,7 +68,7 @@ def check(options: argparse.Namespace) -> tuple[str, int]:
         given = folders(options.package_path)
         file = path_of(options.file, ResourceFinder(None, given))
         if is_world(file):
-            return _show(check_world_file(file), options.json)
+            return _show("world", check_world_file(file), options.json)
         expansion = expand_xacro_file(file, arguments_of_words(options.arguments), given)
     except (DescriptionError, SimSettingsError) as error:
         raise ArmCliError(str(error)) from error
@@ -82,26 +79,24 @@ def check(options: argparse.Namespace) -> tuple[str, int]:
         resources=expansion.finder,
         mesh_cache=cache_folder(),
     )
-    return _show(check_description(expansion.text, expansion.source, build), options.json)
+    result = check_description(expansion.text, expansion.source, build)
+    return _show("robot", result, options.json)
 
 
-def _show(check: "DescriptionCheck | WorldCheck", as_json: bool) -> tuple[str, int]:
-    kind = "world" if hasattr(check, "world") else "robot"
-    summary = getattr(check, kind)
-    text = _as_json(check, kind, summary) if as_json else _as_text(check, summary)
+def _show(kind: str, check: "CheckResult[Any]", as_json: bool) -> tuple[str, int]:
+    text = _as_json(kind, check) if as_json else _as_text(check)
     return text, 0 if check.is_usable else EXIT_UNUSABLE
 
 
-def _places(check: "DescriptionCheck | WorldCheck") -> list[tuple[str, "PackagePlace"]]:
+def _places(check: "CheckResult[Any]") -> list[tuple[str, "PackagePlace"]]:
     """Return the packages that a robot's description names, with the place of each."""
-    packages: Mapping[str, tuple[PackagePlace, ...]] = getattr(check, "packages", {})
-    return [(name, place) for name, places in packages.items() for place in places]
+    return [(name, place) for name, places in check.packages.items() for place in places]
 
 
-def _as_text(check: "DescriptionCheck | WorldCheck", summary: object) -> str:
+def _as_text(check: "CheckResult[Any]") -> str:
     counts = Counter(finding.outcome.value for finding in check.findings)
     width = max(map(len, counts), default=0)
-    lines = [] if summary is None else [printable(str(summary))]
+    lines = [] if check.summary is None else [printable(str(check.summary))]
     lines += [
         printable(f"package '{name}': {place.folder} ({place.origin})")
         for name, place in _places(check)
@@ -121,11 +116,11 @@ def _counted(count: int, word: str) -> str:
     )
 
 
-def _as_json(check: "DescriptionCheck | WorldCheck", kind: str, summary: Any) -> str:
+def _as_json(kind: str, check: "CheckResult[Any]") -> str:
     return json.dumps(
         {
             "usable": check.is_usable,
-            kind: None if summary is None else asdict(summary),
+            kind: None if check.summary is None else asdict(check.summary),
             "packages": [
                 {"name": name, "folder": str(place.folder), "origin": place.origin}
                 for name, place in _places(check)

@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from typing import Generic, TypeVar
 
 import mujoco
 
@@ -91,17 +92,20 @@ def counted(number: int, one: str, many: str = "") -> str:
     return f"{number} {one if number == 1 else many or one + 's'}"
 
 
+SummaryT = TypeVar("SummaryT")
+
+
 @dataclass(frozen=True, slots=True)
-class DescriptionCheck:
+class CheckResult(Generic[SummaryT]):
     """The result of a check.
 
     Attributes:
-        robot: summary of the robot; None if no model could be built.
+        summary: summary of the robot or the world; None if no model could be built.
         findings: the findings.
-        packages: the places of the packages that the description names.
+        packages: the places of the packages that a robot's description names.
     """
 
-    robot: RobotSummary | None
+    summary: SummaryT | None
     findings: tuple[Finding, ...]
     packages: Mapping[str, tuple[PackagePlace, ...]] = field(
         default_factory=dict[str, tuple[PackagePlace, ...]]
@@ -109,13 +113,13 @@ class DescriptionCheck:
 
     @property
     def is_usable(self) -> bool:
-        """Whether the robot can be simulated."""
+        """Whether the robot or the world can be simulated."""
         return not any(finding.outcome is BuildOutcome.FAILED for finding in self.findings)
 
 
 def check_description(
     urdf: str, source: str, options: BuildOptions = DEFAULT_OPTIONS
-) -> DescriptionCheck:
+) -> CheckResult[RobotSummary]:
     """Check a description.
 
     Args:
@@ -128,7 +132,7 @@ def check_description(
         description = RobotDescription(urdf, source)
     except XmlError as error:
         # Without XML no other check is possible.
-        return DescriptionCheck(None, (_failure(error, source),), options.resources.used)
+        return CheckResult(None, (_failure(error, source),), options.resources.used)
     report.add(*unread_elements(description), *refused_by_ros(description))
     robot: Robot | None = None
     hardware: tuple[HardwareInfo, ...] = ()
@@ -162,7 +166,8 @@ def check_description(
             _check_strength(built, report)
             report.add(*mesh_sizes(robot, built), *other_units(robot, built))
             summary = _summary(without_independent_mimics(robot, hardware), built, cameras, sensors)
-    return DescriptionCheck(summary, _without_repeats(report.findings), options.resources.used)
+    findings = tuple(dict.fromkeys(report.findings))
+    return CheckResult(summary, findings, options.resources.used)
 
 
 @contextmanager
@@ -263,7 +268,3 @@ def _summary(
         triangles=sum(int(built.model.mesh_facenum[mesh]) for mesh in drawn),
         mass_kg=float(built.model.body_mass[list(built.bodies.values())].sum()),
     )
-
-
-def _without_repeats(findings: Sequence[Finding]) -> tuple[Finding, ...]:
-    return tuple(dict.fromkeys(findings))

@@ -8,8 +8,8 @@ import numpy as np
 
 from arm_description.errors import DescriptionError, XmlError
 from arm_description.urdf.xml_document import parse_xml
-from arm_gazebo.build_report import BuildOutcome, BuildReport, Finding
-from arm_gazebo.check.description import counted, failures
+from arm_gazebo.build_report import BuildReport
+from arm_gazebo.check.description import CheckResult, counted, failures
 from arm_gazebo.errors import GazeboError
 from arm_gazebo.mjcf.names import name_elements
 from arm_gazebo.model.world_file import SDF_SUFFIXES, load_world
@@ -55,19 +55,6 @@ class WorldSummary:
         return f"world '{self.name}': {', '.join(parts)}{missing}"
 
 
-@dataclass(frozen=True, slots=True)
-class WorldCheck:
-    """The result of a check; `world` is None if no model could be built."""
-
-    world: WorldSummary | None
-    findings: tuple[Finding, ...]
-
-    @property
-    def is_usable(self) -> bool:
-        """Whether the world can be simulated."""
-        return not any(finding.outcome is BuildOutcome.FAILED for finding in self.findings)
-
-
 def is_world(path: Path) -> bool:
     """Return whether a file is SDF or MuJoCo XML, by its suffix and its root element.
 
@@ -83,7 +70,7 @@ def is_world(path: Path) -> bool:
         return False
 
 
-def check_world_file(path: Path) -> WorldCheck:
+def check_world_file(path: Path) -> CheckResult[WorldSummary]:
     """Check a world in SDF or MuJoCo XML, or a single SDF model."""
     report = BuildReport()
     world = None
@@ -92,7 +79,7 @@ def check_world_file(path: Path) -> WorldCheck:
             world = _summary(path, report)
         except (ValueError, mujoco.FatalError) as error:
             raise GazeboError(f"it does not compile: {' '.join(str(error).split())}") from error
-    return WorldCheck(world, tuple(dict.fromkeys(report.findings)))
+    return CheckResult(world, tuple(dict.fromkeys(report.findings)))
 
 
 def _summary(path: Path, report: BuildReport) -> WorldSummary:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from arm_description.errors import XacroError
 from arm_description.xacro.expansion import expand_xacro
-from arm_gazebo.check.description import DescriptionCheck, check_description
+from arm_gazebo.check.description import CheckResult, check_description
 from arm_gazebo.robot.part import BuildOptions
 
 FILES = sorted(Path(__file__).with_name("urdfs").glob("*.urdf"))
@@ -59,10 +59,10 @@ def spoilt_bytes(draw: st.DrawFn, content: bytes) -> bytes:
 
 def check(text: str) -> None:
     report = check_description(text, "robot.urdf")
-    assert report.robot is not None or not report.is_usable
+    assert report.summary is not None or not report.is_usable
     assert all(str(finding) for finding in report.findings)
-    if report.robot is not None:
-        assert math.isfinite(report.robot.mass_kg)
+    if report.summary is not None:
+        assert math.isfinite(report.summary.mass_kg)
 
 
 @SETTINGS
@@ -183,7 +183,7 @@ def test_the_meshes_that_are_spoilt_were_sound(tmp_path, suffix):
     assert {finding.outcome.value for finding in findings} == {"note"}
 
 
-def check_mesh(tmp_path: Path, suffix: str, content: bytes) -> DescriptionCheck:
+def check_mesh(tmp_path: Path, suffix: str, content: bytes) -> CheckResult:
     file = tmp_path / f"mesh.{suffix}"
     file.write_bytes(content)
     shape = f'<geometry><mesh filename="{file}"/></geometry>'

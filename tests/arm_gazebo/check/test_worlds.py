@@ -24,7 +24,7 @@ def file(tmp_path):
 def test_a_world_is_summed_up_with_what_is_left_out(file):
     check = check_world_file(file(WORLD))
     assert check.is_usable
-    assert str(check.world) == (
+    assert str(check.summary) == (
         "world 'lab': 1 thing, 1 of them free to move, 1 shape, 1 light; "
         "1 thing is left out: actor 'walker' in lab.world"
     )
@@ -34,21 +34,21 @@ def test_a_world_is_summed_up_with_what_is_left_out(file):
 def test_a_single_model_is_looked_at_as_a_thing_to_spawn(file):
     model = WORLD[WORLD.index("<model") : WORLD.index("</world>")]
     check = check_world_file(file(f"<sdf version='1.9'>{model}</sdf>", "model.sdf"))
-    assert check.world.things == ("crate",)
+    assert check.summary.things == ("crate",)
 
 
 def test_a_world_in_mjcf_is_looked_at_too(file):
     check = check_world_file(file("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>"))
     assert not check.is_usable  # The suffix says that it is SDF.
     text = "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>"
-    assert check_world_file(file(text, "lab.xml")).world.shapes == 1
+    assert check_world_file(file(text, "lab.xml")).summary.shapes == 1
 
 
 @pytest.mark.parametrize("text", ["no xml", "<sdf/>", WORLD.replace("1 1 1", "1 1")])
 def test_a_mistake_is_a_finding(file, text):
     check = check_world_file(file(text))
     [finding] = check.findings
-    assert (check.world, check.is_usable, finding.outcome.value) == (None, False, "error")
+    assert (check.summary, check.is_usable, finding.outcome.value) == (None, False, "error")
 
 
 @pytest.mark.parametrize(
@@ -72,5 +72,5 @@ def test_a_body_on_a_hinge_is_not_free_to_move(tmp_path):
     free = f'<body pos="1 0 0"><freejoint/>{geom}</body>'
     fixed = f'<body pos="2 0 0">{geom}</body>'
     world.write_text(f"<mujoco><worldbody>{hinge}{free}{fixed}</worldbody></mujoco>")
-    said = str(check_world_file(world).world)
+    said = str(check_world_file(world).summary)
     assert said.startswith("world 'w': 3 things, 1 of them free to move, 1 with joints, 3 shapes")
