@@ -115,26 +115,30 @@ class HardwareComponent:
 
     def read(self, time_s: float, period_s: float) -> HardwareReturn:
         """Read the states if a read is due; an exception counts as ERROR."""
-        return self._exchange(self._reading, self.hardware.read, self.reads, time_s, period_s)
+        cadence = self._reading
+        due_s = cadence.due_period_s(time_s, period_s) if cadence.skips else period_s
+        if due_s is None:
+            return _OK
+        return self._exchange(self.hardware.read, self.reads, time_s, due_s)
 
     def write(self, time_s: float, period_s: float) -> HardwareReturn:
         """Write the commands if a write is due; an exception counts as ERROR."""
-        return self._exchange(self._writing, self.hardware.write, self.writes, time_s, period_s)
+        cadence = self._writing
+        due_s = cadence.due_period_s(time_s, period_s) if cadence.skips else period_s
+        if due_s is None:
+            return _OK
+        return self._exchange(self.hardware.write, self.writes, time_s, due_s)
 
     def _exchange(
         self,
-        cadence: Cadence,
         exchange: Callable[[float, float], HardwareReturn],
         runs: RunRecord,
         time_s: float,
         period_s: float,
     ) -> HardwareReturn:
-        due_s = cadence.due_period_s(time_s, period_s) if cadence.skips else period_s
-        if due_s is None:
-            return _OK
         began_s = self._now_s()
         try:
-            outcome = exchange(time_s, due_s)
+            outcome = exchange(time_s, period_s)
         except KeyboardInterrupt:
             raise
         except BaseException as error:
@@ -142,7 +146,7 @@ class HardwareComponent:
             # component off and goes on.
             self._on_exception(f"hardware component '{self.name}' failed", error)
             return HardwareReturn.ERROR
-        runs.add_period(due_s)
+        runs.add_period(period_s)
         runs.add_duration(self._now_s() - began_s)
         if outcome is _DEACTIVATE and self.state is not LifecycleState.ACTIVE:
             # It is already inactive: a driver may repeat its request in every read.

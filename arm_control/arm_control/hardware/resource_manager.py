@@ -170,19 +170,21 @@ class ResourceManager:
 
     def read(self, time_s: float, period_s: float) -> list[HardwareFault]:
         """Read every configured component that is due; return the faults."""
-        return [
-            (component, outcome)
-            for component in self._reading
-            if (outcome := component.read(time_s, period_s)) is not _OK
-        ]
+        faults: list[HardwareFault] = []
+        for component in self._reading:
+            outcome = component.read(time_s, period_s)
+            if outcome is not _OK:
+                faults.append((component, outcome))
+        return faults
 
     def write(self, time_s: float, period_s: float) -> list[HardwareFault]:
         """Write every active component that is due; return the faults."""
-        return [
-            (component, outcome)
-            for component in self._writing
-            if (outcome := component.write(time_s, period_s)) is not _OK
-        ]
+        faults: list[HardwareFault] = []
+        for component in self._writing:
+            outcome = component.write(time_s, period_s)
+            if outcome is not _OK:
+                faults.append((component, outcome))
+        return faults
 
     def unmeasured_states(self) -> tuple[str, ...]:
         """Return the states of active components that are not numbers; any thread."""
