@@ -8,6 +8,7 @@ from urllib.parse import quote
 TITLE = "Arm suite"
 SCRIPTS = (
     "software_rendering.js",
+    "every_message.js",
     "link.js",
     "channel.js",
     "poses.js",

@@ -6,7 +6,7 @@ from arm_viewer.ros import controller_observer, property_observer, run_observer,
 from arm_viewer.ros.controller_observer import ControllerObserver
 from arm_viewer.ros.run_observer import RunObserver
 from arm_viewer.ros.world_client import WorldClient
-from arm_viewer.world_requests import LookAtThing
+from arm_viewer.world_requests import LookAtThing, OpenWorld
 
 LIST = "/controller_manager/list_controllers"
 
@@ -30,11 +30,19 @@ def asked(monkeypatch):
 
     class Caller:
         def __init__(self, node, service_class, service, max_wait_s=0.0):
-            self._service = service
+            self.service = service
+            self.is_pending = False
 
         def ask(self, request, then):
-            asked.append(self._service)
+            asked.append(self.service)
+            self.is_pending = True
             return True
+
+        def is_overdue(self):
+            return self.is_pending
+
+        def forget(self):
+            self.is_pending = False
 
         def close(self):
             pass
@@ -69,6 +77,19 @@ def test_a_thing_is_not_looked_at_any_more_when_the_simulation_has_gone(asked):
     client.discover({})
     client.collect(2.0)
     assert (client.view, asked) == (None, [])
+
+
+def test_a_change_without_an_answer_is_said_once_and_without_another_change(asked):
+    client = WorldClient(Node(), lambda: True)
+    client.discover({})
+    client.serve(OpenWorld("file:///shapes"))
+    client.collect(1.0)
+    assert (asked[-1], client.view.answer.text) == ("/load_world", "")
+    client.collect(2.0)
+    client.collect(3.0)
+    answer = client.view.answer
+    assert (answer.number, answer.is_done) == (1, False)
+    assert answer.text == "/load_world did not answer within 60 s"
 
 
 def test_controllers_are_known_before_somebody_watches(asked):

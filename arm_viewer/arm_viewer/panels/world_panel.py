@@ -80,7 +80,7 @@ class WorldPanel:
         self._said = gui.add_html("", visible=False)
         self._gravity.set.on_click(in_order(lambda _: self._try(self._gravity.request)))
         add.on_click(in_order(lambda _: self._try(self._fields.request)))
-        load.on_click(in_order(lambda _: self._load()))
+        load.on_click(in_order(lambda _: self._try(self._opened)))
 
     def update(self, snapshot: Snapshot) -> None:
         """Show what there is, and pass on where the handle is dragged."""
@@ -171,10 +171,10 @@ class WorldPanel:
         x, y, z = read_numbers("velocity", self._push_by.value, ("x", "y", "z"))
         return PushThing(self._chosen, (x, y, z))
 
-    def _load(self) -> None:
-        uri = self._view.worlds.get(self._world.value)
-        if uri is not None:
-            self._send(OpenWorld(uri))
+    def _opened(self) -> WorldRequest:
+        if self._world.value not in self._view.worlds:
+            raise ValueError("The simulation names no world that could be loaded.")
+        return OpenWorld(self._view.worlds[self._world.value])
 
     def _add_file(self, file: DroppedFile) -> None:
         metres = UNITS_M[self._unit.value]

@@ -70,6 +70,7 @@ SERVICES = {
     "/get_current_world": GetCurrentWorld,
     SET_PARAMETERS: SetParametersAtomically,
 }
+CHANGING = {"/set_entity_state", "/spawn_entity", "/delete_entity", "/load_world", SET_PARAMETERS}
 ANSWER_S = 60.0
 """Building a world with large meshes takes its time."""
 FOLLOW_S = 0.1
@@ -146,11 +147,12 @@ class WorldClient:
         for check, pose in [entry for entry in self._checks if entry[0].is_over]:
             self._checks.remove((check, pose))
             self._take_check(check, pose)
+        for caller in self._callers.values():
+            if caller.service in CHANGING and caller.is_overdue():
+                caller.forget()
+                self._say(f"{caller.service} did not answer within {ANSWER_S:g} s", False)
         for wish in tuple(self._wishes):
             caller = self._callers[wish.service]
-            if caller.is_overdue():
-                caller.forget()
-                self._say(f"{wish.service} did not answer within {ANSWER_S:g} s", False)
             if caller.ask(wish.question, lambda answer, wish=wish: self._end(wish, answer)):
                 self._wishes.remove(wish)
         if self._followed and self._callers and now_s - self._followed_s > FOLLOW_S:

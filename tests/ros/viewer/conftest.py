@@ -32,14 +32,26 @@ CAMERA_PIXELS = """() => {
   return Array.from(pixels.filter((_, index) => index % 61 === 0));
 }"""
 FEW_FRAMES = """
-  const frame = window.requestAnimationFrame.bind(window);
-  window.requestAnimationFrame = (draw) => setTimeout(() => frame(draw), 200);
+  window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 200);
+  window.cancelAnimationFrame = clearTimeout;
 """
 COUNTED_DRAWING = (Path(__file__).parent / "counted_drawing.js").read_text()
 
 
 def pytest_report_header() -> str:
     return f"browser tests: {BROWSER or 'left out, as there is no Chromium (apt install chromium)'}"
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item, call):
+    """Say what the pages of a failed test show: what was awaited may stand there in other words."""
+    report = yield
+    if report.failed:
+        for name, value in item.funcargs.items():
+            page = value.page if isinstance(value, PageUser) else value
+            if hasattr(page, "inner_text"):
+                report.sections.append((name, page.inner_text("body")))
+    return report
 
 
 class Visitor(PageUser):
