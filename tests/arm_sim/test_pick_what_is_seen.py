@@ -15,7 +15,7 @@ from arm_planning.perception.table import SeenThing, find_things
 from arm_planning.perception.testing import noisy
 from arm_sim import GoalError, JointTrajectory, Simulation
 
-PICKS = 10
+PICKS = 20
 NOISE_AT_1M = 0.002
 LIFT_M = 0.05
 OPTICAL = "camera_head_depth_optical_frame"
@@ -101,7 +101,7 @@ def test_the_robot_is_cut_out_wherever_it_is():
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
-def test_it_lifts_9_of_10_cylinders_that_it_sees():
+def test_it_lifts_18_of_20_cylinders_that_it_sees():
     urdf = expand_xacro(resolve_uri(XACRO))
     random = np.random.default_rng(0)
     lifted = 0
@@ -117,4 +117,4 @@ def test_it_lifts_9_of_10_cylinders_that_it_sees():
                     pick(sim, urdf, whole[0])
             lifted += sim.pose("thing")[2, 3] - before > 0.8 * LIFT_M
             sim.delete("thing")
-    assert lifted >= 9
+    assert lifted >= 18
