@@ -17,6 +17,8 @@ from arm_planning.planners.tree import Tree
 
 Array = NDArray[np.float64]
 
+BLOCK = 64
+"""Samples whose random numbers are drawn at once."""
 REACH = 2.0
 """Longest move, in the joints' units. Longer ones end soon where there is room; shorter ones make
 shorter paths, and turn more corners."""
@@ -47,9 +49,12 @@ def rrt_connect(
     """
     from_start = growing = Tree(start[None, :])
     other = Tree(goals)
-    random = np.random.default_rng(seed)
-    while True:
-        grown = _explore(space, growing, _sample(space, growing, random), reach)
+    for anywhere, change, part in _draws(space, seed):
+        sample = anywhere
+        if part < 1.0:
+            near = growing.state(int(part * len(growing))) + change
+            sample = np.minimum(np.maximum(near, space.lower), space.upper)
+        grown = _explore(space, growing, sample, reach)
         if grown is not None:
             met = _follow(space, other, growing.state(grown), reach)
             if met is not None:
@@ -60,12 +65,14 @@ def rrt_connect(
             growing, other = other, growing
 
 
-def _sample(space: Space, tree: Tree, random: np.random.Generator) -> Array:
-    if random.random() >= NEARBY:
-        return random.uniform(space.lower, space.upper)
-    change = random.standard_normal(len(space.lower)) * (SPREAD * (space.upper - space.lower))
-    near = tree.state(int(random.integers(len(tree)))) + change
-    return np.minimum(np.maximum(near, space.lower), space.upper)
+def _draws(space: Space, seed: Sequence[int]) -> Iterator[tuple[Array, Array, float]]:
+    """Yield a state anywhere, a change, and which part of a tree to change; 1 and more for none."""
+    random, shape = np.random.default_rng(seed), (BLOCK, len(space.lower))
+    spread = SPREAD * (space.upper - space.lower)
+    while True:
+        states = random.uniform(space.lower, space.upper, shape)
+        changes = random.standard_normal(shape) * spread
+        yield from zip(states, changes, (random.random(BLOCK) / NEARBY).tolist(), strict=True)
 
 
 def _explore(space: Space, tree: Tree, sample: Array, reach: float) -> int | None:

@@ -16,13 +16,13 @@ Array = NDArray[np.float64]
 
 TRIALS = 60
 """Random shortcuts that are tried at most."""
-PATIENCE = 12
+PATIENCE = 8
 """Ends them after so many in a row without a gain."""
 GAIN = 0.01
 """Share of the path's length that a random shortcut must save to be tried."""
 ROUNDS = 4
 """How often each corner is cut, at most."""
-CUTS = (1.0, 0.5, 0.2)
+CUTS = (1.0, 0.5)
 """Shares of the shorter side that a corner's cut takes away; 1 leaves the corner out."""
 LEAST_CUT = 0.03
 """Length that a cut must save to be tried, in the joints' units."""
