@@ -18,13 +18,38 @@ import pytest
 ROOT = Path(__file__).parents[2]
 DESCRIBE = Path(__file__).with_name("describe_installation.py")
 TIMEOUT_S = 300.0
+BUILT_BY_COLCON = frozenset(
+    {
+        "arm_control",
+        "arm_controller",
+        "arm_description",
+        "arm_node",
+        "arm_planning",
+        "launch_py",
+        "urdf_tutorial",
+    }
+)
+"""Packages of every kind, modules, data and executables, with what they need.
+
+Each takes colcon seconds. `test_setup_files.py` looks at what every setup.py gives to setuptools.
+"""
 
 
 @dataclass(frozen=True)
 class Project:
-    """The root pyproject.toml of a source tree."""
+    """The root pyproject.toml of a source tree.
+
+    Attributes:
+        root: the tree.
+        only: the packages that are looked at; empty for all.
+    """
 
     root: Path
+    only: frozenset[str] = frozenset()
+
+    def is_looked_at(self, package: str) -> bool:
+        """Whether a package is one of those."""
+        return not self.only or package in self.only
 
     @cached_property
     def table(self) -> dict:
@@ -34,7 +59,8 @@ class Project:
     @property
     def packages(self) -> list[str]:
         """The packages of the wheel that hold modules, each a folder of the root."""
-        return self.table["tool"]["hatch"]["build"]["targets"]["wheel"]["dev-mode-dirs"]
+        folders = self.table["tool"]["hatch"]["build"]["targets"]["wheel"]["dev-mode-dirs"]
+        return [package for package in folders if self.is_looked_at(package)]
 
     @property
     def data_packages(self) -> dict[str, Path]:
@@ -44,7 +70,7 @@ class Project:
         return {
             manifest.parent.name: manifest.parent
             for manifest in manifests
-            if manifest.parent.name not in self.packages
+            if len(manifest.parts) > 2 and self.is_looked_at(manifest.parent.name)
         }
 
     @property
@@ -55,13 +81,17 @@ class Project:
     @property
     def scripts(self) -> dict[str, str]:
         """The console scripts: name to `module:function`."""
-        return self.table["project"]["scripts"]
+        scripts: dict[str, str] = self.table["project"]["scripts"]
+        return {n: call for n, call in scripts.items() if self.is_looked_at(call.split(".")[0])}
 
     def data_files(self) -> list[str]:
         """Every file that belongs below share/, relative to it."""
         found: list[str] = []
         for source, target in self.shared_data.items():
             path, place = self.root / source, Path(target).relative_to("share")
+            # Either a file below the package's folder, or its line in the index of all packages.
+            if not (self.is_looked_at(place.parts[0]) or self.is_looked_at(place.name)):
+                continue
             files = [path] if path.is_file() else [p for p in path.rglob("*") if p.is_file()]
             found += [str(place / file.relative_to(path)) for file in files]
         return sorted(found)
@@ -229,13 +259,14 @@ def install_by_colcon(folder: Path, _wheel: Path) -> Installation:
     python = make_environment(folder / "venv")
     pip("install", "colcon-common-extensions", into=python, folder=folder)
     colcon = folder / "venv/bin/colcon"
-    run([colcon, "build"], sources.root, bare())
+    run([colcon, "build", "--packages-select", *BUILT_BY_COLCON], sources.root, bare())
     install = sources.root / "install"
+    built = Project(sources.root, BUILT_BY_COLCON)
     sourced = run(["bash", "-c", f". {install}/local_setup.bash && env -0"], folder, bare())
     variables = dict(line.split("=", 1) for line in sourced.stdout.split("\0") if line)
-    owners = {name: target.split(".")[0] for name, target in sources.scripts.items()}
+    owners = {name: target.split(".")[0] for name, target in built.scripts.items()}
     return Installation(
-        sources,
+        built,
         python,
         install,
         shares=lambda package: install / package / "share",

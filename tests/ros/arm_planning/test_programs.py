@@ -23,7 +23,7 @@ def run(package: str, name: str, *arguments: str) -> tuple[int, list[str]]:
     """Run a program to its end; return its exit code, and what its node has logged."""
     command = [sys.executable, "-m", "arm_cli", "run", package, name, *arguments]
     done = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
-    assert "Traceback" not in done.stderr
+    assert "Traceback" not in done.stderr, done.stderr
     lines = (done.stdout + done.stderr).splitlines()
     return done.returncode, [line.rpartition("]: ")[2] for line in lines if "]: " in line]
 
