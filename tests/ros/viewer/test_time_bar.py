@@ -106,6 +106,14 @@ def stopped(client):
     return client.subscribe(Bool, "/emergency_stop/active", latched)
 
 
+def test_the_emergency_stop_is_whole_however_long_the_words_beside_it(bar):
+    right, width = bar.page.evaluate("""() => {
+      document.getElementById("arm-lag").textContent = "12345.67 s behind";
+      return [document.getElementById("arm-stop").getBoundingClientRect().right, innerWidth];
+    }""")
+    assert right <= width
+
+
 def test_time_is_paused_stepped_and_goes_on(bar, state):
     bar.shows("factor", "^\u00d7[0-9]")
     before_s = bar.pause()
