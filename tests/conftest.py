@@ -7,6 +7,8 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 from collections.abc import Generator, Iterator
 from contextlib import ExitStack
 from functools import cache
@@ -54,11 +56,20 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["ROS_DOMAIN_ID"] = str(_lock_a_domain())
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     os.environ.setdefault("ROS_PYTHON_CHECK_FIELDS", "1")
+    if is_above_workers:
+        threading.Thread(target=_free_hung_workers, daemon=True).start()
     # pytest-xdist would give the files with the fewest tests last, and those are the longest.
     config.option.loadscopereorder = False
     prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     if sys.prefix not in prefixes:
         os.environ["AMENT_PREFIX_PATH"] = os.pathsep.join([sys.prefix, *filter(None, prefixes)])
+
+
+def _free_hung_workers() -> None:
+    """Remove torn ports: a worker that waits at one does not even notice that its time is over."""
+    while True:
+        remove_torn_ports()
+        time.sleep(5.0)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -59,9 +59,10 @@ SHM_FOLDER = "/dev/shm"
 LEAST_AGE_S = 3.0
 """A living process finishes a new port within milliseconds."""
 _PORT_FILE = re.compile(r"fast(?:rtps|dds)_port\d+")
+_HEAD_BYTES = 4096
 _STATE = struct.Struct("=I")
-_FILLED = 2
-"""First number in a complete file of Boost.Interprocess; it is 0 or 1 before that."""
+_FILLED, _CORRUPTED = 2, 3
+"""First number in a file of Boost.Interprocess; it is 0 or 1 until the file is complete."""
 
 
 def remove_torn_ports(folder: str = SHM_FOLDER) -> list[str]:
@@ -69,7 +70,8 @@ def remove_torn_ports(folder: str = SHM_FOLDER) -> list[str]:
 
     A process that is killed while Fast DDS creates a port's file leaves it empty. Any process that
     uses the port next then waits for ever for the dead one to finish it, and ignores SIGINT and
-    SIGTERM. A related issue is https://github.com/eProsima/Fast-DDS/issues/1144.
+    SIGTERM. A related issue is https://github.com/eProsima/Fast-DDS/issues/1144. A process that
+    waits already is freed, too: it reads in its file that the port is corrupted, and makes another.
     """
     removed: list[str] = []
     if not is_on("torn_ports"):
@@ -78,9 +80,16 @@ def remove_torn_ports(folder: str = SHM_FOLDER) -> list[str]:
         for entry in entries:
             if _PORT_FILE.fullmatch(entry.name) and _is_torn(entry.path):
                 with suppress(OSError):
+                    _free_those_who_wait(entry.path)
                     os.unlink(entry.path)
                     removed.append(entry.name)
     return removed
+
+
+def _free_those_who_wait(path: str) -> None:
+    with open(path, "r+b", buffering=0) as file:
+        os.truncate(file.fileno(), max(os.stat(path).st_size, _HEAD_BYTES))
+        os.pwrite(file.fileno(), _STATE.pack(_CORRUPTED), 0)
 
 
 def _is_torn(path: str) -> bool:
@@ -128,7 +137,6 @@ def _inode(path: str) -> int | None:
 PAUSE_MS = 50
 """Longest delay of a sender; a reader without messages wakes at this interval."""
 
-_HEAD_BYTES = 4096
 _PORT = struct.Struct("=I")
 _NUMBERS = struct.Struct("=IIII")
 """Port number, number of readers, timeout, interval between refreshes (a third of it)."""

@@ -32,6 +32,13 @@ def test_a_port_that_was_never_finished_goes(tmp_path: Path, name: str, content:
     assert not port.exists()
 
 
+@pytest.mark.parametrize("content", [b"", b"\x02", bytes(64), BEGUN])
+def test_who_waits_for_it_reads_that_it_is_corrupted(tmp_path: Path, content: bytes) -> None:
+    with make(tmp_path, "fastrtps_port7661", content).open("rb") as held:
+        remove_torn_ports(str(tmp_path))
+        assert held.read(4) == b"\x03\0\0\0"
+
+
 @pytest.mark.parametrize(
     ("name", "content", "age_s"),
     [
