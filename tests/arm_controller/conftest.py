@@ -78,7 +78,12 @@ class FakeRobot:
         """Add a node."""
         from rclpy.node import Node
 
-        node = Node(name, context=self._context)
+        from arm_node.workarounds.discovery import first_node
+
+        def make() -> Node:
+            return Node(name, context=self._context)
+
+        node = make() if self._nodes else first_node(make)
         self._nodes.append(node)
         self._executor.add_node(node)
         return node

@@ -91,13 +91,15 @@ class Client:
         from rclpy.node import Node
         from rclpy.signals import SignalHandlerOptions
 
+        from arm_node.workarounds.discovery import first_node
+
         self.context = Context()
         rclpy.init(
             context=self.context,
             domain_id=domain_id,
             signal_handler_options=SignalHandlerOptions.NO,
         )
-        self.node = Node("test_client", context=self.context)
+        self.node = first_node(lambda: Node("test_client", context=self.context))
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
 

@@ -140,6 +140,9 @@ class Collector:
 class Client:
     """An ordinary user's rclpy node: default settings, and an executor in a thread.
 
+    It is made as `arm run` makes a program's first node: beside a busy simulation one in some
+    hundred would else hear nothing.
+
     Args:
         domain: ROS domain; by default that of the tests.
     """
@@ -151,13 +154,15 @@ class Client:
         from rclpy.node import Node
         from rclpy.signals import SignalHandlerOptions
 
+        from arm_node.workarounds.discovery import first_node
+
         self.context = Context()
         rclpy.init(
             context=self.context,
             signal_handler_options=SignalHandlerOptions.NO,
             domain_id=domain,
         )
-        self.node = Node("test_client", context=self.context)
+        self.node = first_node(lambda: Node("test_client", context=self.context))
         self.executor = SingleThreadedExecutor(context=self.context)
         self._actions: list[Any] = []
         self.executor.add_node(self.node)

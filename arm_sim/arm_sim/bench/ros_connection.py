@@ -14,6 +14,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from arm_node.executor_thread import ExecutorThread
 from arm_node.testing import DiscoveryCheck
+from arm_node.workarounds.discovery import first_node
 from arm_sim.errors import BenchError
 
 WAIT_S = 30.0
@@ -96,7 +97,7 @@ class RosConnection:
             domain_id=domain_id,
             signal_handler_options=SignalHandlerOptions.NO,
         )
-        self.node = Node("test", context=self._context)
+        self.node = first_node(lambda: Node("test", context=self._context))
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._thread = ExecutorThread("node of the test", self._executor)
