@@ -330,8 +330,11 @@ class MotionProof:
         ]
         if not close:
             return None
-        contact = contacts[min(close, key=lambda number: slack[number])]
+        closest = min(close, key=lambda number: slack[number])
+        contact = contacts[closest]
         reason = str(contact)
         if contact.depth_m < 0.0:
-            reason += f", closer than the {FLOOR_M * 1e3:g} mm that the proof of a motion needs"
+            # A curve may come nearer than its chord, by what is lost.
+            needed_m = FLOOR_M + lost[parts[closest]] - ERROR_M
+            reason += f", closer than the {needed_m * 1e3:.2g} mm that the proof of a motion needs"
         return Obstruction(segment, at, contact, reason)

@@ -2,15 +2,12 @@
 
 import logging
 import threading
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from moveit_msgs.msg import (
-    AttachedCollisionObject,
-    CollisionObject,
-    PlanningSceneWorld,
-)
+from moveit_msgs.msg import AttachedCollisionObject, PlanningSceneWorld
+from moveit_msgs.msg import CollisionObject as ObjectMessage
 from moveit_msgs.msg import PlanningScene as SceneMessage
 from moveit_msgs.srv import ApplyPlanningScene, GetPlanningScene
 from octomap_msgs.msg import OctomapWithPose
@@ -30,9 +27,11 @@ from arm_planning.ros.transform_reader import TransformReader
 from arm_planning.ros.usable_meshes import without_unusable
 from arm_planning.ros.world_objects import WorldObjects
 from arm_planning.scene.frames import LinkPoses, frame_names
+from arm_planning.scene.objects import CollisionObject
 from arm_planning.scene.occupancy_map import OccupancyMap
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import SceneOutcome, change_scene
+from arm_planning.scene.world_things import followed
 
 SERVICES_DEPTH = 10
 MONITORED_DEPTH = 100
@@ -62,11 +61,13 @@ class SceneMonitor:
         """
         self._model = model
         self._scene = scene
-        self._lock = threading.Lock()
+        # Reading the scene takes in what has moved in the world, also within a change.
+        self._lock = threading.RLock()
         self.states = JointStateMonitor(node, model, *others)
         self._frames = TransformReader(node)
         self._world: WorldObjects | None = None
-        self._things: frozenset[str] = frozenset()
+        self._things: Mapping[str, CollisionObject] = {}
+        self._followed: PlanningScene | None = None
         self._publisher = node.create_publisher(
             SceneMessage, "monitored_planning_scene", MONITORED_DEPTH
         )
@@ -74,7 +75,7 @@ class SceneMonitor:
         topics: dict[str, tuple[type[Any], Callable[[Any], None]]] = {
             "planning_scene": (SceneMessage, self._hear_scene),
             "planning_scene_world": (PlanningSceneWorld, self._hear_world),
-            "collision_object": (CollisionObject, self._hear_object),
+            "collision_object": (ObjectMessage, self._hear_object),
             "attached_collision_object": (AttachedCollisionObject, self._hear_attached),
         }
         for topic, (message, take) in topics.items():
@@ -92,7 +93,7 @@ class SceneMonitor:
             node: has the subscription.
             robot: pose of the robot's root in the simulated world.
         """
-        self._world = WorldObjects(node, robot)
+        self._world = WorldObjects(node, robot, {link.name for link in self._model.robot.links})
 
     @property
     def scene(self) -> PlanningScene:
@@ -105,15 +106,9 @@ class SceneMonitor:
             return
         with self._lock:
             things = self._world.take()
-            if things is None:
-                return
-            scene = self._scene
-            others = {
-                name: each for name, each in scene.objects.items() if name not in self._things
-            }
-            new = {name: each for name, each in things.items() if name not in scene.attached}
-            self._scene = replace(scene, objects={**new, **others})
-            self._things = frozenset(new) - others.keys()
+            if things is not self._things or self._scene is not self._followed:
+                self._scene = self._followed = followed(self._scene, self._things, things)
+                self._things = things
 
     def current(self) -> PlanningScene:
         """Return the scene with the robot where it is now."""
@@ -182,14 +177,14 @@ class SceneMonitor:
         self.change(message)
 
     def _hear_world(self, message: PlanningSceneWorld) -> None:
-        removes_all = CollisionObject(operation=CollisionObject.REMOVE)
+        removes_all = ObjectMessage(operation=ObjectMessage.REMOVE)
         self._change_objects([removes_all, *message.collision_objects], message.octomap)
 
-    def _hear_object(self, message: CollisionObject) -> None:
+    def _hear_object(self, message: ObjectMessage) -> None:
         self._change_objects([message])
 
     def _change_objects(
-        self, objects: Sequence[CollisionObject], octomap: OctomapWithPose | None = None
+        self, objects: Sequence[ObjectMessage], octomap: OctomapWithPose | None = None
     ) -> None:
         scene = SceneMessage(is_diff=True)
         scene.robot_state.is_diff = True

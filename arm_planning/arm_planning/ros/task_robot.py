@@ -69,8 +69,9 @@ class TaskRobot:
         self._get = node.create_client(GetPlanningScene, "get_planning_scene")
         self._apply = node.create_client(ApplyPlanningScene, "apply_planning_scene")
         self._wait("no move_group: does it run with planning:=true?", self._is_connected)
+        # The executor fails if one disappears while it collects what to wait for.
         for subscription in subscriptions:
-            node.destroy_subscription(subscription)
+            process.executor.create_task(node.destroy_subscription, subscription)
         self.planner = self._planner(configuration)
         self._display = PlanDisplay(node, self.planner.model)
 

@@ -183,16 +183,16 @@ class ExecutionManager:
     def _follow(
         self, run: "_Run", watch: Watch | None, interrupted: Callable[[], bool]
     ) -> ExecutionOutcome:
-        start_s = self._states.stamp_s
+        moving = _Stopwatch(self._states)
         accepted_by_s = time.monotonic() + SERVER_TIMEOUT_S
         run.send()
         try:
-            while not (outcome := run.outcome() or self._interruption(run, start_s, watch)):
+            while not (outcome := run.outcome() or self._interruption(run, moving, watch)):
                 if interrupted():
                     self.stop()
                 if not run.is_accepted and time.monotonic() < accepted_by_s:
                     # It does not move yet; on a busy machine the answers take a while.
-                    start_s = self._states.stamp_s
+                    moving = _Stopwatch(self._states)
         finally:
             # Whatever ended it, an error of the watch included: what still runs is stopped.
             running = run.cancel()
@@ -207,12 +207,12 @@ class ExecutionManager:
         return outcome
 
     def _interruption(
-        self, run: "_Run", start_s: float, watch: Watch | None
+        self, run: "_Run", moving: "_Stopwatch", watch: Watch | None
     ) -> ExecutionOutcome | None:
         """Wait a moment; return why the run must end before the controllers are done."""
         if self._stop.wait(POLL_S):
             return STOPPED
-        elapsed_s = self._states.stamp_s - start_s
+        elapsed_s = moving.read_s()
         if self._settings.monitors_duration and elapsed_s > run.longest_s:
             return ExecutionOutcome(
                 MoveItErrorCode.TIMED_OUT,
@@ -231,6 +231,26 @@ class ExecutionManager:
         deadline_s = time.monotonic() + REST_TIMEOUT_S
         while self._states.largest_speed() > RESTS and time.monotonic() < deadline_s:
             time.sleep(POLL_S)
+
+
+class _Stopwatch:
+    """The robot's time since it was made."""
+
+    def __init__(self, states: JointStateMonitor) -> None:
+        self._states = states
+        self._start_s = states.stamp_s
+        self._read_s = 0.0
+
+    def read_s(self) -> float:
+        """Return the time; it goes on where somebody sets the clock back to before the start.
+
+        A snapshot that has this motion is never from before, and takes the motion back, too.
+        """
+        stamp_s = self._states.stamp_s
+        if stamp_s < self._start_s:
+            self._start_s = stamp_s - self._read_s
+        self._read_s = stamp_s - self._start_s
+        return self._read_s
 
 
 class _Run:

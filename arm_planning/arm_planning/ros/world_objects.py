@@ -1,6 +1,6 @@
 """The things of the simulated world as objects of the planning scene, moving ones too."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 import numpy as np
 from rclpy.node import Node
@@ -29,29 +29,28 @@ class WorldObjects:
     One thread at a time.
     """
 
-    def __init__(self, node: Node, robot: RigidTransform) -> None:
+    def __init__(self, node: Node, robot: RigidTransform, links: Collection[str]) -> None:
         """Listen to the simulation.
 
         Args:
             node: has the subscription.
             robot: pose of the robot's root in the simulated world, where it is fixed.
+            links: the robot's links.
         """
-        self._world = robot.inverse()
+        self._world, self._links = robot.inverse(), links
         self._polled = PolledSubscriptions(node)
         latched = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._subscription = self._polled.subscribe(MarkerArray, TOPIC, latched)
-        self._waiting: MarkerArray | None = None
+        self._things: Mapping[str, CollisionObject] = {}
 
-    def take(self) -> Mapping[str, CollisionObject] | None:
-        """Return the things by their names, if they have moved or changed since the last call."""
-        for raw, _ in self._polled.take(self._subscription, DEPTH):
+    def take(self) -> Mapping[str, CollisionObject]:
+        """Return the things by their names; the same mapping until they have moved or changed."""
+        heard = [raw for raw, _ in self._polled.take(self._subscription, DEPTH)]
+        if heard:
             # Each message has all shapes.
-            self._waiting = deserialize_message(raw, MarkerArray)
-        if self._waiting is None:
-            return None
-        solids = solids_of(self._waiting.markers)
-        self._waiting = None
-        return objects_of_solids(solids, self._world)
+            solids = solids_of(deserialize_message(heard[-1], MarkerArray).markers)
+            self._things = objects_of_solids(solids, self._world, self._links)
+        return self._things
 
 
 def solids_of(markers: Iterable[Marker]) -> Iterator[WorldSolid]:

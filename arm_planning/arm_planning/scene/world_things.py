@@ -1,7 +1,7 @@
 """Objects of the scene from the solids of a simulated world."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.scene.objects import CollisionObject, PlacedShape
+from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.shapes import Shape, TriangleMesh
 
 Array = NDArray[np.float64]
@@ -36,7 +37,7 @@ class WorldSolid:
 
 
 def objects_of_solids(
-    solids: Iterable[WorldSolid], world: RigidTransform
+    solids: Iterable[WorldSolid], world: RigidTransform, links: Collection[str] = ()
 ) -> dict[str, CollisionObject]:
     """Return an object for each thing; it stands where its first solid stands.
 
@@ -45,19 +46,39 @@ def objects_of_solids(
     Args:
         solids: the solids of all things.
         world: the world's frame in the planning frame.
+        links: names that no object may have: a thing called so, as the simulation calls the shapes
+            of the world itself, gets an underscore.
     """
     shapes: dict[str, list[PlacedShape]] = {}
     for solid in solids:
         shape = _shape(solid)
         if shape is not None:
             placed = PlacedShape(shape, world.then(solid.pose))
-            shapes.setdefault(solid.owner, []).append(placed)
+            name = f"{solid.owner}_" if solid.owner in links else solid.owner
+            shapes.setdefault(name, []).append(placed)
     objects: dict[str, CollisionObject] = {}
     for name, placed in shapes.items():
         origin = placed[0].pose
         inside = tuple(PlacedShape(each.shape, origin.inverse().then(each.pose)) for each in placed)
         objects[name] = CollisionObject(name, origin, inside)
     return objects
+
+
+def followed(
+    scene: PlanningScene,
+    before: Mapping[str, CollisionObject],
+    things: Mapping[str, CollisionObject],
+) -> PlanningScene:
+    """Return a scene with the things of the world as they are now, but for those that are attached.
+
+    Args:
+        scene: the scene.
+        before: the things that it was last given.
+        things: the things.
+    """
+    others = {name: each for name, each in scene.objects.items() if name not in before}
+    present = {name: each for name, each in things.items() if name not in scene.attached}
+    return replace(scene, objects={**others, **present})
 
 
 def _shape(solid: WorldSolid) -> Shape | None:

@@ -243,6 +243,16 @@ def test_what_stays_closer_than_a_tenth_of_a_millimetre_is_not_proved():
     assert obstruction.reason.endswith("closer than the 0.1 mm that the proof of a motion needs")
 
 
+def test_what_a_curve_may_take_of_the_clearance_is_said():
+    deviation = np.zeros((3, 2))
+    deviation[1, 1] = 4e-4
+    obstruction = between_walls().prove(along(4.5e-4), deviation)
+    assert obstruction is not None
+    assert obstruction.reason.endswith(
+        "0.45 mm apart, closer than the 0.5 mm that the proof of a motion needs"
+    )
+
+
 def test_an_end_that_is_free_but_very_close_can_be_left_and_reached():
     leaving = along(5e-5)[1:]
     assert between_walls().prove(leaving) is None

@@ -206,6 +206,26 @@ def test_the_time_of_a_motion_counts_from_when_its_controller_takes_it(
     assert elapsed == [0.0, 0.0, 1.0]
 
 
+def test_the_time_of_a_motion_goes_on_when_the_clock_is_set_back(
+    manager: ExecutionManager, controller: Controller, states: States
+):
+    # The fifth is a snapshot with this motion: the motion goes back, too.
+    stamps = iter([100.2, 0.05, 0.15, 0.1, 0.6])
+    elapsed: list[float] = []
+
+    def watch(elapsed_s: float) -> str:
+        elapsed.append(elapsed_s)
+        if (stamp_s := next(stamps, None)) is None:
+            controller.end(GoalStatus.STATUS_SUCCEEDED)
+        else:
+            states.stamp_s = stamp_s
+        return ""
+
+    states.stamp_s = 100.0
+    assert manager.execute(MOTION, (), watch).code is MoveItErrorCode.SUCCESS
+    assert elapsed == pytest.approx([0.0, 0.2, 0.2, 0.3, 0.25, 0.75])
+
+
 def test_a_refused_motion_names_the_controller(manager: ExecutionManager, controller: Controller):
     controller.accepted = False
     outcome = manager.execute(MOTION)

@@ -1,5 +1,7 @@
 """Objects of the scene from the simulated world's shapes."""
 
+from dataclasses import replace
+
 import numpy as np
 from geometry_msgs.msg import Point, Vector3
 from visualization_msgs.msg import Marker
@@ -7,9 +9,10 @@ from visualization_msgs.msg import Marker
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.ros.world_objects import solids_of
-from arm_planning.scene.objects import CollisionObject
+from arm_planning.scene.objects import AttachedBody, CollisionObject
+from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.shapes import TriangleMesh
-from arm_planning.scene.world_things import objects_of_solids
+from arm_planning.scene.world_things import followed, objects_of_solids
 
 RAISED = RigidTransform((0.0, 0.0, -0.5))
 
@@ -52,3 +55,24 @@ def test_triangles_share_their_corners_and_flat_ones_are_left_out():
 
 def test_what_has_no_solid_shape_is_left_out():
     assert objects_of([marker(Marker.TEXT_VIEW_FACING), marker(Marker.TRIANGLE_LIST)], RAISED) == {}
+
+
+def test_a_thing_called_as_a_link_gets_an_underscore():
+    solids = solids_of([marker(Marker.CUBE, name="world"), marker(Marker.CUBE, name="can")])
+    assert set(objects_of_solids(solids, RAISED, ["base", "world"])) == {"world_", "can"}
+
+
+def test_what_was_attached_follows_the_world_again_once_it_is_detached():
+    here, there = (objects_of([marker(Marker.CUBE, x=x)], RAISED) for x in (0.0, 1.0))
+    scene = followed(PlanningScene({}), {}, here)
+    held = replace(scene, objects={}, attached={"thing": AttachedBody(here["thing"], "hand")})
+    assert not followed(held, here, there).objects
+    let_go = replace(held, objects=dict(here), attached={})
+    assert followed(let_go, there, there).objects == there
+
+
+def test_other_objects_stay_and_what_has_gone_from_the_world_goes():
+    things, own = (objects_of([marker(Marker.CUBE, name=name)], RAISED) for name in ("can", "own"))
+    scene = followed(PlanningScene({}, own), {}, things)
+    assert set(scene.objects) == {"can", "own"}
+    assert followed(scene, things, {}).objects == own

@@ -2,7 +2,9 @@
 
 import subprocess
 import sys
+import threading
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import pytest
 from programs import Program
@@ -83,6 +85,28 @@ def test_a_task_is_planned_and_executed_and_one_without_a_solution_says_why(plan
     assert said[0] == "Task planning failed"
     assert any("blocker" in line for line in said[1:-1])
     assert "stage 'current state' has no solution" in said[-1]
+
+
+def test_a_task_destroys_nothing_while_the_executor_may_collect_what_to_wait_for(
+    planning, monkeypatch
+):
+    from rclpy.node import Node
+
+    from arm_planning.mtc_demo_node import CONFIGURATION
+    from arm_planning.ros.task_robot import TaskRobot
+
+    client, threads = planning.client, []
+    destroy = Node.destroy_subscription
+
+    def noted(node, subscription):
+        threads.append(threading.current_thread())
+        return destroy(node, subscription)
+
+    monkeypatch.setattr(Node, "destroy_subscription", noted)
+    process = SimpleNamespace(executor=client.executor, wait=threading.Event().wait)
+    assert TaskRobot(client.node, process, CONFIGURATION).planner.model.groups
+    client.wait_until(lambda: len(threads) == 2, "the end of both subscriptions")
+    assert threading.current_thread() not in threads
 
 
 def test_a_gripper_moves_from_wherever_it_is(planning):
