@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import socket
@@ -14,7 +15,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from launch_py.fast_dds.removal import SharedMemoryLedger
-from launch_py.fast_dds.shared_memory import hide, segments_of, watch_folder
+from launch_py.fast_dds.shared_memory import SHM_FOLDER, hide, segments_of, watch_folder
 from launch_py.plan.steps import LaunchPlan
 from launch_py.screen import PlainScreen, ReadySummary, Screen, TerminalScreen
 from launch_py.screen.log_folder import DEFAULT_LIMIT_BYTES, LogFolder
@@ -92,6 +93,33 @@ def _fields(data: bytes) -> dict[str, str]:
 OBSERVE_DELAYS_S = (0.02, 0.1, 0.5)
 """The times after a lock file's creation at which its owner is looked up. The process takes the
 lock a little after creating the file, and much later on a busy processor."""
+
+
+class SegmentWatch:
+    """Looks for owners of shared memory when files of it appear; belongs to the loop's thread.
+
+    A program creates dozens of files as it starts, and a look goes through all files and locks of
+    the machine: files that appear before the first look share it and those after it.
+    """
+
+    def __init__(
+        self, loop: EventLoop, look: Callable[[], object], folder: str = SHM_FOLDER
+    ) -> None:
+        self._loop = loop
+        self._look = look
+        self._shared_until_s = -math.inf
+        inotify = watch_folder(folder)
+        if inotify is not None:
+            loop.add_reader(inotify, lambda: self._appeared(inotify))
+
+    def _appeared(self, inotify: int) -> None:
+        os.read(inotify, 65536)
+        now_s = self._loop.clock()
+        if now_s >= self._shared_until_s:
+            self._shared_until_s = now_s + OBSERVE_DELAYS_S[0]
+            for delay_s in OBSERVE_DELAYS_S:
+                self._loop.call_later(delay_s, self._look)
+
 
 REPEATED_SIGNAL_S = 0.25
 """A second SIGINT within this time is ignored: `timeout` sends each signal twice."""
@@ -193,9 +221,7 @@ class _LaunchSession:
     def run(self) -> int:
         """Start everything, wait until it has ended, clean up; return the exit code."""
         self._loop.add_reader(self._notify.fileno(), self._notify.receive)
-        inotify = watch_folder()
-        if inotify is not None:
-            self._loop.add_reader(inotify, lambda: self._segments_appeared(inotify))
+        SegmentWatch(self._loop, self._look_at_segments)
         # The loop blocks these signals in this thread later. Without handlers, a signal in the
         # thread of an event handler that is still running would raise KeyboardInterrupt.
         for number in stop_signals():
@@ -332,11 +358,6 @@ class _LaunchSession:
             m.child is not None and m.child.pid == session
             for m in self._supervisor.processes.values()
         )
-
-    def _segments_appeared(self, inotify: int) -> None:
-        os.read(inotify, 65536)
-        for delay_s in OBSERVE_DELAYS_S:
-            self._loop.call_later(delay_s, self._look_at_segments)
 
     def _look_at_segments(self) -> None:
         self._ledger.observe()
