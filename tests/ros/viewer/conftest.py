@@ -22,8 +22,9 @@ collect_ignore_glob = [] if BROWSER else ["test_*.py"]
 # Drawing in software on a busy machine takes its time, which is no reason to give the context up.
 ARGUMENTS = ("--disable-gpu", "--disable-gpu-watchdog", "--no-sandbox")
 CAMERA_PIXELS = """() => {
-  const image = document.querySelector("img[src]");
-  if (!image || image.naturalWidth < 100) return [];
+  const image = [...document.querySelectorAll("img[src]")].find(
+    ({ naturalWidth: x, naturalHeight: y }) => x >= 100 && 3 * x === 4 * y);
+  if (!image) return [];
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
   const context = canvas.getContext("2d");
@@ -207,11 +208,12 @@ def page_at(browser) -> Iterator[Callable[..., Any]]:
 def new_visitor(browser, simulation, page_url) -> Iterator[Callable[..., Visitor]]:
     """Return a function that lets one more visitor open the page of the simulation.
 
-    Its arguments are a script that runs before those of the page, and the size of the window.
+    Its arguments are a script that runs before those of the page, by default one that leaves out
+    most frames, and the size of the window.
     """
     pages = []
 
-    def arrive(script: str = "", viewport: Mapping[str, int] = DESK) -> Visitor:
+    def arrive(script: str = FEW_FRAMES, viewport: Mapping[str, int] = DESK) -> Visitor:
         pages.append(_new_page(browser, script, viewport))
         arrived = Visitor(pages[-1])
         arrived.visit(page_url)

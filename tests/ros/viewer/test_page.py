@@ -25,6 +25,14 @@ def client(client_for_file):
     return client_for_file
 
 
+@pytest.fixture(scope="module")
+def visitor(visitor):
+    """A visitor who has seen the camera's picture and hidden it: each more takes its time."""
+    assert visitor.camera_pixels().size
+    visitor.switch("Show", False)
+    return visitor
+
+
 @pytest.fixture
 def positions(client):
     """Return the joints' newest positions on /joint_states, by a function."""
@@ -125,6 +133,7 @@ def test_on_a_phone_the_robot_is_above_a_sheet_that_closes(new_visitor):
     phone.wait_until(lambda: is_above() and phone.place(view)["height"] > height, "it closes")
     assert phone.place(sheet)["height"] < 80
     assert phone.errors == []
+    phone.page.close()
 
 
 FRAME_OF_CHANNEL = """() => {
@@ -285,6 +294,7 @@ def test_the_tab_of_the_browser_bears_the_projects_name_and_icon(visitor):
 
 
 def test_the_camera_panel_shows_the_arm_move(visitor, command):
+    visitor.switch("Show", True)
     before = visitor.camera_pixels()
 
     def moved() -> bool:
@@ -293,6 +303,7 @@ def test_the_camera_panel_shows_the_arm_move(visitor, command):
 
     visitor.wait_until(moved, "the image shows another pose")
     assert visitor.camera_pixels().shape == before.shape
+    visitor.switch("Show", False)
 
 
 def test_the_frustum_of_the_camera_can_be_hidden(visitor):
