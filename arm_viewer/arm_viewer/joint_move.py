@@ -111,7 +111,7 @@ def plan_moves(snapshot: Snapshot, request: MoveJoints) -> tuple[JointMove, ...]
     sink with every message, and otherwise at their present position. A controller with an unknown
     joint gets no command.
     """
-    readings = _positions(snapshot, request.namespace)
+    readings = snapshot.positions(request.namespace)
     commands = snapshot.commands.get(request.namespace, {})
     held = {joint: _hold_position(commands, joint, at) for joint, at in readings.items()}
     robot = _robot(snapshot, request.namespace)
@@ -123,12 +123,6 @@ def plan_moves(snapshot: Snapshot, request: MoveJoints) -> tuple[JointMove, ...]
             positions = tuple(targets[joint] for joint in drive.joints)
             moves.append(JointMove(drive, positions, _duration_s(drive, targets, readings, robot)))
     return tuple(moves)
-
-
-def _positions(snapshot: Snapshot, namespace: str) -> dict[str, float]:
-    states = snapshot.joint_states.get(f"{namespace}/joint_states")
-    joints = {} if states is None else states.joints
-    return {name: r.position for name, r in joints.items() if math.isfinite(r.position)}
 
 
 def _hold_position(commands: Mapping[str, float], joint: str, position: float) -> float:

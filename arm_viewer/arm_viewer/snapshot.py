@@ -378,6 +378,16 @@ class Snapshot:
     planning: "Mapping[str, PlanningView]" = field(default_factory=lambda: MappingProxyType({}))
     """The move_groups, by namespace."""
 
+    def readings(self, namespace: str) -> Mapping[str, JointReading]:
+        """Return the joints of a namespace, none as long as nobody publishes their states."""
+        states = self.joint_states.get(f"{namespace}/joint_states")
+        return {} if states is None else states.joints
+
+    def positions(self, namespace: str) -> dict[str, float]:
+        """Return the finite positions of a namespace's joints."""
+        readings = self.readings(namespace).items()
+        return {name: r.position for name, r in readings if math.isfinite(r.position)}
+
 
 def frame_name(frame_id: str) -> str:
     """Return the name of a frame without a leading slash, which tf2 also ignores."""

@@ -54,7 +54,6 @@ class MockMotion:
             HardwareInfoError: a mimic joint has no leader in this component, or has command
                 interfaces.
         """
-        self._info = info
         self._offset = offset
         self._integrates = integrates
         joints = info.joints

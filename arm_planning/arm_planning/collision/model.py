@@ -1,6 +1,5 @@
 """The collision check of a robot in a scene."""
 
-from dataclasses import replace
 from math import inf
 
 import mujoco
@@ -14,7 +13,7 @@ from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.posed_scene import PosedScene, deepest
 from arm_planning.collision.specification import CollisionBody, CompiledScene, SceneCompiler
 from arm_planning.errors import MoveItErrorCode, PlanningError
-from arm_planning.robot.model import JointPositions, PlanningModel
+from arm_planning.robot.model import PlanningModel
 from arm_planning.scene.scene import PlanningScene
 
 Array = NDArray[np.float64]
@@ -59,12 +58,10 @@ class CollisionModel:
         like: "CollisionModel | None" = None,
     ) -> None:
         self._planning_model = model
-        self._scene = scene
         self._group = group
-        self._meshes = meshes or MeshPieces()
         self._joints = model.joints if group is None else model.group(group).joints
         known = None if like is None else like.compiled
-        compiler = SceneCompiler(model, scene, self._joints, self._meshes, known)
+        compiler = SceneCompiler(model, scene, self._joints, meshes or MeshPieces(), known)
         self._compiled = compiler.compile()
         self._posed = PosedScene(self._compiled)
         self._model, self._data = self._posed.model, self._posed.data
@@ -154,11 +151,6 @@ class CollisionModel:
         pose[:3, :3] = self._data.xmat[self._posed.links[link]].reshape(3, 3)
         pose[:3, 3] = self._data.xpos[self._posed.links[link]]
         return pose
-
-    def with_positions(self, positions: JointPositions) -> "CollisionModel":
-        """Return the model of the scene with other positions; joints not named keep theirs."""
-        scene = replace(self._scene, positions={**self._scene.positions, **positions})
-        return CollisionModel(self._planning_model, scene, self._group, self._meshes, self)
 
     def _constant_contacts(self) -> tuple[CollisionContact, ...]:
         self._posed.place(np.zeros(len(self._joints)))

@@ -89,7 +89,7 @@ class JogServer:
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         poll_s = settings.publish_period_s / POLLS
         self._polling = node.create_timer(poll_s, self._go_on, clock=steady, autostart=False)
-        self._idle = node.create_timer(IDLE_S, self._look_around, clock=steady)
+        node.create_timer(IDLE_S, self._look_around, clock=steady)
 
     def begin(self) -> None:
         """Say what is jogged."""

@@ -89,7 +89,6 @@ class BatchEnv(VectorEnv[Observations, Actions, Any]):
         self.goal: Mapping[str, Array] = {}
         self.reset()
         self._make_spaces()
-        self._started = False
 
     def _make_spaces(self) -> None:
         observed = {name: values[0] for name, values in self.task.observe(self).items()}

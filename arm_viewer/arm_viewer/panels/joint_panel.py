@@ -221,8 +221,7 @@ class _RobotSliders:
         displays = namespace in snapshot.displayed
         drives = joint_drives(snapshot.controllers, namespace)
         driven = {joint for drive in drives for joint in drive.joints}
-        states = snapshot.joint_states.get(f"{namespace}/joint_states")
-        readings: Mapping[str, JointReading] = {} if states is None else states.joints
+        readings = snapshot.readings(namespace)
         for slider in self._sliders:
             slider.update(readings, displays or slider.range.name in driven)
         self._mimics.update(readings)

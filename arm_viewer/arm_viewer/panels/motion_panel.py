@@ -1,6 +1,5 @@
 """Plans and executes motions of one robot: its goal, its buttons, and the plan in the scene."""
 
-import math
 from collections.abc import Mapping
 
 from viser import GuiApi, GuiButtonHandle, SceneApi
@@ -69,7 +68,7 @@ class MotionPanel:
         robot = self._model.robot
         places = link_frames(robot, self._namespace, self._frames.known)
         origin = self._frames.known.get(places[robot.root], RigidTransform())
-        present = _present(snapshot, self._namespace)
+        present = snapshot.positions(self._namespace)
         self._show_goal(view, origin, present)
         self._show_handle(view, origin, present)
         self._player.update(view.plan, origin, present, snapshot.made_s)
@@ -218,12 +217,6 @@ class MotionPanel:
             self._shown[place] = content
             self._texts[place].content = content
             self._texts[place].visible = bool(sentence)
-
-
-def _present(snapshot: Snapshot, namespace: str) -> Mapping[str, float]:
-    states = snapshot.joint_states.get(f"{namespace}/joint_states")
-    joints = {} if states is None else states.joints
-    return {name: r.position for name, r in joints.items() if math.isfinite(r.position)}
 
 
 def _said(view: PlanningView) -> tuple[str, str]:

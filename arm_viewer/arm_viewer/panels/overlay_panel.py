@@ -133,8 +133,7 @@ class OverlayPanel:
         rows: list[str] = []
         for topic, shown in self._robots.items():
             namespace = snapshot.descriptions[topic].namespace
-            states = snapshot.joint_states.get(f"{namespace}/joint_states")
-            readings = states.joints if states is not None and self._efforts.value else {}
+            readings = snapshot.readings(namespace) if self._efforts.value else {}
             loads = joint_loads(shown.robot, readings)
             shown.show_loads(loads)
             rows += [

@@ -53,7 +53,6 @@ class WorldPanel:
         self._followed = ""
         self._held: RigidTransform | None = None
         self._wrong = ""
-        self._contents: dict[int, str] = {}
 
     def build(self, gui: GuiApi) -> None:
         """Create the elements, and serve the browsers' messages."""

@@ -3,7 +3,6 @@
 import math
 from dataclasses import dataclass
 
-SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)
 MIN_SPEED, MAX_SPEED = 0.01, 100.0
 
 

@@ -1,9 +1,7 @@
 """Observe move_groups in any namespace: the robots that motions can be planned for."""
 
 import logging
-import math
 from collections.abc import Callable, Mapping
-from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -120,10 +118,11 @@ class PlanningObserver:
         except (PlanningError, SrdfError) as error:
             _logger.warning("motions of %s are not shown: %s", namespace or "/", error)
             return None
-        present = partial(self._positions, namespace)
-        return ObservedMoveGroup(self._node, self._polled, namespace, model, present, self._clock)
-
-    def _positions(self, namespace: str) -> dict[str, float]:
-        states = self._latest().joint_states.get(f"{namespace}/joint_states")
-        joints = {} if states is None else states.joints
-        return {name: r.position for name, r in joints.items() if math.isfinite(r.position)}
+        return ObservedMoveGroup(
+            self._node,
+            self._polled,
+            namespace,
+            model,
+            lambda: self._latest().positions(namespace),
+            self._clock,
+        )
