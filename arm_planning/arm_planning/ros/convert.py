@@ -1,6 +1,7 @@
 """Converts poses, robot states and trajectories from and to messages; units are the same."""
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
@@ -189,42 +190,50 @@ def trajectory_of(message: RobotTrajectory) -> TimedTrajectory:
     """Return a trajectory; velocities and accelerations that a point lacks are NaN.
 
     Raises:
-        PlanningError: INVALID_MOTION_PLAN: a point has a wrong number of values, a value is not
-            finite, or its time does not increase.
+        PlanningError: INVALID_MOTION_PLAN: a joint is named twice, a point has a wrong number of
+            values, a value is not finite, its time does not increase, or there is a part for joints
+            of several degrees of freedom.
     """
     given = message.joint_trajectory
     count = len(given.joint_names)
+    if repeated := [name for name, times in Counter(given.joint_names).items() if times > 1]:
+        raise _no_trajectory(f"the trajectory names {listing(repeated)} more than once")
+    if message.multi_dof_joint_trajectory.points:
+        raise _no_trajectory(
+            "the trajectory has a multi_dof_joint_trajectory, which no controller here follows"
+        )
     points: list[Any] = list(given.points)
     for number, point in enumerate(points):
         sizes = {len(point.velocities), len(point.accelerations)} - {0}
         if len(point.positions) != count or not sizes <= {count}:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_MOTION_PLAN,
+            raise _no_trajectory(
                 f"point {number} of the trajectory has {len(point.positions)} positions for "
-                f"{count} joints",
+                f"{count} joints"
             )
     times = np.array([seconds(point.time_from_start) for point in points])
-    positions = np.array([point.positions for point in points]).reshape(len(points), count)
-    if not np.isfinite(positions).all():
-        raise PlanningError(
-            MoveItErrorCode.INVALID_MOTION_PLAN, "the trajectory has a position that is not finite"
-        )
     if (np.diff(times) <= 0.0).any():
         number = int(np.argmax(np.diff(times) <= 0.0)) + 1
-        raise PlanningError(
-            MoveItErrorCode.INVALID_MOTION_PLAN,
-            f"point {number} of the trajectory is not later than the point before it",
+        raise _no_trajectory(
+            f"point {number} of the trajectory is not later than the point before it"
         )
     return TimedTrajectory(
         tuple(given.joint_names),
         times,
-        positions,
-        _values(points, "velocities", count),
-        _values(points, "accelerations", count),
+        *(_values(points, name, count) for name in ("positions", "velocities", "accelerations")),
     )
 
 
 def _values(points: Sequence[Any], name: str, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+    given = [list(getattr(point, name)) for point in points]
+    for number, row in enumerate(given):
+        if not all(map(math.isfinite, row)):
+            raise _no_trajectory(
+                f"point {number} of the trajectory has {name} that are not finite: "
+                + ", ".join(map(str, row))
+            )
     missing = [math.nan] * count
-    rows = [list(getattr(point, name)) or missing for point in points]
-    return np.array(rows).reshape(len(points), count)
+    return np.array([row or missing for row in given]).reshape(len(points), count)
+
+
+def _no_trajectory(sentence: str) -> PlanningError:
+    return PlanningError(MoveItErrorCode.INVALID_MOTION_PLAN, sentence)

@@ -96,7 +96,7 @@ class PlanningServices:
     def _straight(self, request: Any, scene: PlanningScene, planner: Planner) -> TimedCartesianPath:
         session = self._session
         frames = session.frames(scene)
-        poses = [pose_of(pose, f"way point {i}") for i, pose in enumerate(request.waypoints)]
+        poses = [pose_of(pose, f"way point {i}") for i, pose in enumerate(request.waypoints, 1)]
         frame = request.header.frame_id.lstrip("/")
         relative = bool(frame) and frame == request.link_name
         if not relative:

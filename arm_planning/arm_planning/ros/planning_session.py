@@ -88,16 +88,16 @@ class PlanningSession:
                 "Ignoring the state supplied as start state in the motion planning request"
             )
         try:
-            scene = self.scene_for(diff, from_present=from_present, interrupted=interrupted)
-            if not from_present:
-                scene = self.in_state(scene, request.start_state)
+            scene, remark = self.scene_for(diff, from_present=from_present, interrupted=interrupted)
+            if not from_present and is_given(request.start_state):
+                scene, remark = self.in_state(scene, request.start_state), ""
             with self.planner() as planner:
                 response = planner.plan(self.request(request, scene), scene, interrupted)
         except PlanningError as error:
             return PlanResponse(error.code, str(error), {}, None, 0.0)
         if response.trajectory is not None and response.message:
             LOGGER.warning("%s", response.message)
-        return response
+        return replace(response, message="; ".join(filter(None, (response.message, remark))))
 
     def scene_for(
         self,
@@ -105,8 +105,8 @@ class PlanningSession:
         *,
         from_present: bool = False,
         interrupted: Callable[[], bool] = never,
-    ) -> PlanningScene:
-        """Return the scene to plan in: the present one with changes.
+    ) -> tuple[PlanningScene, str]:
+        """Return the scene to plan in, the present one with changes, and a remark on it, or "".
 
         Args:
             diff: the changes; never a whole scene, whatever it says of itself.
@@ -116,11 +116,13 @@ class PlanningSession:
         Raises:
             PlanningError: a change is not possible.
         """
-        if problem := self.monitor.states.wait_for_fresh(STATE_TIMEOUT_S, interrupted):
-            LOGGER.warning("planning starts from the last known state: %s", problem)
+        remark = self.monitor.states.wait_for_fresh(STATE_TIMEOUT_S, interrupted)
+        if remark:
+            remark = f"planning starts from the last known state: {remark}"
+            LOGGER.warning("%s", remark)
         scene = self.monitor.current()
         if diff is None:
-            return scene
+            return scene, remark
         if from_present and is_given(diff.robot_state):
             LOGGER.warning(
                 "Execution of motions should always start at the robot's current state. "
@@ -129,7 +131,7 @@ class PlanningSession:
             diff.robot_state = RobotState(is_diff=True)
         # As upstream: clients send a default message, which would otherwise clear the scene.
         diff.is_diff = True
-        return _all_of(self.monitor.applied(scene, diff))
+        return _all_of(self.monitor.applied(scene, diff)), remark
 
     def request(self, message: MotionPlanRequest, scene: PlanningScene) -> PlanRequest:
         """Return a request without its start state, its frames those of a scene.

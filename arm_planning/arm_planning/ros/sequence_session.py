@@ -87,7 +87,9 @@ class SequenceSession:
         if not items:
             LOGGER.warning("Received empty request. That's ok but maybe not what you intended.")
         try:
-            scene = self.session.scene_for(diff, from_present=from_present, interrupted=interrupted)
+            scene, message = self.session.scene_for(
+                diff, from_present=from_present, interrupted=interrupted
+            )
             if not from_present:
                 scene = self._at_start(scene, items)
             scene = self._inside_limits(scene, items)

@@ -1,5 +1,6 @@
 """Runs trajectories on the controllers' actions, and stops them."""
 
+import math
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -38,6 +39,8 @@ STOP_TIMEOUT_S = 2.0
 END_TIMEOUT_S = 3.0
 CANCEL_AGAIN_S = 0.25
 REST_TIMEOUT_S = 1.0
+ANSWER_TIMEOUT_S = 2.0
+"""How long the controllers of a robot that stands still may take to say that they are done."""
 RESTS = 1e-3
 """Speed below which the robot counts as still, rad/s or m/s."""
 
@@ -178,7 +181,7 @@ class ExecutionManager:
             )
         part = part_for(trajectory, controller)
         longest_s = self._settings.longest_s(trajectory.duration_s, controller)
-        return _Goal(controller, client, _goal_message(part, controller), longest_s)
+        return _Goal(controller, client, part, longest_s)
 
     def _follow(
         self, run: "_Run", watch: Watch | None, interrupted: Callable[[], bool]
@@ -213,7 +216,7 @@ class ExecutionManager:
         if self._stop.wait(POLL_S):
             return STOPPED
         elapsed_s = moving.read_s()
-        if self._settings.monitors_duration and elapsed_s > run.longest_s:
+        if self._settings.monitors_duration and moving.is_over(run.longest_s):
             return ExecutionOutcome(
                 MoveItErrorCode.TIMED_OUT,
                 "Controller is taking too long to execute trajectory (the expected upper bound "
@@ -240,6 +243,17 @@ class _Stopwatch:
         self._states = states
         self._start_s = states.stamp_s
         self._read_s = 0.0
+        self._over_since_s = math.inf
+
+    def is_over(self, limit_s: float) -> bool:
+        """Return whether the last time read is beyond a limit.
+
+        A robot that stands still may have arrived: on a busy machine the answer takes a while.
+        """
+        now_s = time.monotonic()
+        self._over_since_s = min(self._over_since_s, now_s) if self._read_s > limit_s else math.inf
+        waits = now_s - self._over_since_s < ANSWER_TIMEOUT_S
+        return self._read_s > limit_s and not (waits and self._states.largest_speed() < RESTS)
 
     def read_s(self) -> float:
         """Return the time; it goes on where somebody sets the clock back to before the start.
@@ -306,13 +320,14 @@ class _Goal:
         self,
         controller: TrajectoryController,
         client: NotedActionClient,
-        message: Any,
+        part: TimedTrajectory,
         longest_s: float,
     ) -> None:
         self.longest_s = longest_s
         self.controller = controller
         self._client = client
-        self._message = message
+        self._message = _goal_message(part, controller)
+        self._joints = part.joints
         self._handle: Any = None
         self._result: Any = None
         self._refused = False
@@ -338,10 +353,16 @@ class _Goal:
     def outcome(self) -> ExecutionOutcome | None:
         name = self.controller.name
         if self._refused:
+            missing = [each for each in self.controller.joints if each not in self._joints]
+            why = (
+                f"it has nothing for {listing(missing)}, which only a controller with "
+                "allow_partial_joints_goal takes"
+                if missing
+                else "is it active? `arm control list_controllers` and its log tell"
+            )
             return ExecutionOutcome(
                 MoveItErrorCode.CONTROL_FAILED,
-                f"controller '{name}' refused the trajectory; is it active? "
-                "`arm control list_controllers` and its log tell",
+                f"controller '{name}' refused the trajectory; {why}",
             )
         if self._result is not None:
             return self._ended(self._result)

@@ -8,7 +8,7 @@ from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Pose
 from moveit_msgs.msg import RobotState, RobotTrajectory
 from planar_robot import planar_model
-from trajectory_msgs.msg import JointTrajectoryPoint
+from trajectory_msgs.msg import JointTrajectoryPoint, MultiDOFJointTrajectoryPoint
 
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import MoveItErrorCode, PlanningError
@@ -116,6 +116,24 @@ def points(*rows: tuple[float, list[float]]) -> RobotTrajectory:
     return message
 
 
+def with_velocities(value: float) -> RobotTrajectory:
+    message = points((0.0, [0.0, 0.0]))
+    message.joint_trajectory.points[0].velocities = [value, value]
+    return message
+
+
+def naming(*joints: str) -> RobotTrajectory:
+    message = points((0.0, [0.0, 0.0]))
+    message.joint_trajectory.joint_names = list(joints)
+    return message
+
+
+def with_a_base() -> RobotTrajectory:
+    message = RobotTrajectory()
+    message.multi_dof_joint_trajectory.points = [MultiDOFJointTrajectoryPoint()]
+    return message
+
+
 def test_velocities_that_are_not_given_are_nan():
     trajectory = trajectory_of(points((0.0, [0.0, 0.0]), (1.0, [1.0, 1.0])))
     assert np.isnan(trajectory.velocities).all()
@@ -125,7 +143,10 @@ def test_velocities_that_are_not_given_are_nan():
     ("message", "problem"),
     [
         (points((0.0, [0.0])), "point 0 of the trajectory has 1 positions for 2 joints"),
-        (points((0.0, [0.0, math.inf])), "a position that is not finite"),
+        (points((0.0, [0.0, math.inf])), "point 0 .* positions that are not finite: 0.0, inf"),
+        (with_velocities(math.nan), "point 0 .* velocities that are not finite: nan, nan"),
+        (naming("elbow", "elbow"), "names elbow more than once"),
+        (with_a_base(), "multi_dof_joint_trajectory"),
         (points((0.5, [0.0, 0.0]), (0.5, [1.0, 1.0])), "point 1 .* is not later"),
     ],
 )

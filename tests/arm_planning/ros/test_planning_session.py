@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import pytest
+from moveit_msgs.msg import Constraints, JointConstraint, MotionPlanRequest
 from planar_robot import planar_model
 
 from arm_description.resources import ResourceFinder
@@ -26,6 +27,14 @@ class Monitor:
     """Holds a scene, as the scene monitor does."""
 
     scene: PlanningScene = EMPTY
+    problem: str = ""
+
+    @property
+    def states(self) -> "Monitor":
+        return self
+
+    def wait_for_fresh(self, *_: object) -> str:
+        return self.problem
 
     def current(self) -> PlanningScene:
         return self.scene
@@ -55,3 +64,13 @@ def test_a_scene_that_stays_as_it_was_blocks_nothing(session: PlanningSession, m
     with session.planner() as planner:
         trajectory = planner.move("arm", {"shoulder": 1.5, "elbow": 0.0})
     assert session.watch(trajectory, monitor.scene)(0.0) == ""
+
+
+def test_a_plan_from_an_old_state_says_so(session: PlanningSession, monitor: Monitor):
+    monitor.problem = "joint_states stopped 3.0 s ago"
+    goal = Constraints(joint_constraints=[JointConstraint(joint_name="shoulder", position=1.0)])
+    response = session.plan(MotionPlanRequest(group_name="arm", goal_constraints=[goal]))
+    assert response.trajectory is not None
+    assert response.message == (
+        "planning starts from the last known state: joint_states stopped 3.0 s ago"
+    )

@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -81,6 +82,7 @@ class States:
     """A robot that stands at the start."""
 
     stamp_s = 0.0
+    speed = 0.0
 
     def wait_for_fresh(self, *_arguments: Any) -> str:
         return ""
@@ -89,7 +91,7 @@ class States:
         return {"a": 0.0}
 
     def largest_speed(self) -> float:
-        return 0.0
+        return self.speed
 
 
 @pytest.fixture
@@ -224,6 +226,56 @@ def test_the_time_of_a_motion_goes_on_when_the_clock_is_set_back(
     states.stamp_s = 100.0
     assert manager.execute(MOTION, (), watch).code is MoveItErrorCode.SUCCESS
     assert elapsed == pytest.approx([0.0, 0.2, 0.2, 0.3, 0.25, 0.75])
+
+
+def test_a_motion_that_takes_too_long_is_stopped(
+    manager: ExecutionManager, controller: Controller, states: States
+):
+    def watch(_elapsed_s: float) -> str:
+        states.stamp_s, states.speed = 10.0, 0.1
+        return ""
+
+    outcome = manager.execute(MOTION, (), watch)
+    assert outcome.code is MoveItErrorCode.TIMED_OUT
+    assert controller.cancels == 1
+
+
+def test_a_robot_that_stands_still_may_have_arrived_though_its_controller_is_late_to_say_so(
+    manager: ExecutionManager, controller: Controller, states: States
+):
+    looks: list[float] = []
+
+    def watch(elapsed_s: float) -> str:
+        states.stamp_s = 10.0
+        looks.append(elapsed_s)
+        if len(looks) == 3:
+            controller.end(GoalStatus.STATUS_SUCCEEDED)
+        return ""
+
+    assert manager.execute(MOTION, (), watch).code is MoveItErrorCode.SUCCESS
+    assert looks == [0.0, 10.0, 10.0]
+
+
+def test_a_robot_that_never_arrives_is_not_waited_for(
+    manager: ExecutionManager,
+    controller: Controller,
+    states: States,
+    monkeypatch: pytest.MonkeyPatch,
+):
+    monkeypatch.setattr(trajectory_executor, "ANSWER_TIMEOUT_S", 0.02)
+
+    def watch(_elapsed_s: float) -> str:
+        states.stamp_s = 10.0
+        return ""
+
+    assert manager.execute(MOTION, (), watch).code is MoveItErrorCode.TIMED_OUT
+
+
+def test_a_refused_part_of_a_controllers_joints_is_named(controller: Controller, states: States):
+    both = replace(ARM, joints=("a", "b"))
+    manager: Any = ExecutionManager(None, states, lambda: [both], ExecutionSettings())
+    controller.accepted = False
+    assert "it has nothing for b, which only" in manager.execute(MOTION).message
 
 
 def test_a_refused_motion_names_the_controller(manager: ExecutionManager, controller: Controller):

@@ -161,6 +161,64 @@ def test_a_box_put_into_the_way_stops_the_motion(planning, at_the_start, turn_to
     assert planning.stands_still()[TURN] < 0.0
 
 
+@pytest.fixture
+def deactivate(planning):
+    """Return a function that deactivates a controller until the end of the test."""
+    from controller_manager_msgs.srv import SwitchController
+
+    stopped: list[str] = []
+
+    def switch(**names: list[str]) -> None:
+        request = SwitchController.Request(strictness=SwitchController.Request.STRICT, **names)
+        name = "/controller_manager/switch_controller"
+        assert planning.client.call(SwitchController, name, request).ok
+
+    def stop(name: str) -> None:
+        switch(deactivate_controllers=[name])
+        stopped.append(name)
+
+    yield stop
+    switch(activate_controllers=stopped)
+
+
+def test_a_controller_that_is_deactivated_midway_is_named(
+    planning, at_the_start, turn_to, deactivate
+):
+    goal = planning.start_move(turn_to(1.0, **SLOW))
+    planning.joint_moves(TURN, by=0.05)
+    deactivate("arm_controller")
+    for end in (goal.end(), planning.move(turn_to(0.5))):
+        assert (end.status, end.result.error_code.val) == (ABORTED, CONTROL_FAILED)
+        assert "arm_controller" in end.result.error_code.message
+
+
+def test_joint_states_that_stop_are_said(planning, at_the_start, turn_to, deactivate):
+    goal = planning.start_move(turn_to(-0.5, **SLOW))
+    planning.joint_moves(TURN, by=0.05)
+    deactivate("joint_state_broadcaster")
+    assert goal.end().status == SUCCEEDED
+    planned = planning.plan(turn_to(0.5)).error_code
+    assert planned.val == SUCCESS
+    assert "joint_states stopped" in planned.message
+    ended = planning.move(turn_to(0.5))
+    assert (ended.status, ended.result.error_code.val) == (ABORTED, CONTROL_FAILED)
+    assert "joint_states stopped" in ended.result.error_code.message
+
+
+def test_a_part_of_a_controllers_joints_is_refused_and_named(planning, at_the_start, turn_to):
+    from moveit_msgs.action import ExecuteTrajectory
+
+    response = planning.plan(turn_to(0.4))
+    trajectory = response.trajectory.joint_trajectory
+    trajectory.joint_names = trajectory.joint_names[:1]
+    for point in trajectory.points:
+        point.positions = point.positions[:1]
+        point.velocities = point.accelerations = []
+    ended = planning.send(ExecuteTrajectory, "/execute_trajectory", execute_goal(response)).end()
+    assert (ended.status, ended.result.error_code.val) == (ABORTED, CONTROL_FAILED)
+    assert "it has nothing for link2_to_link3" in ended.result.error_code.message
+
+
 def test_arm_move_moves_the_arm_to_a_named_state(planning, launched, at_the_start):
     import os
     import sys
