@@ -99,7 +99,13 @@ class Descent:
     def __init__(self, chain: Chain, lower: Array, upper: Array) -> None:
         n = len(lower)
         self._chain = chain
-        self._lower, self._upper = lower, upper
+        # MuJoCo takes no bounds that are equal, which those of a joint that must not move are.
+        least = 2.0 * np.spacing(np.maximum(np.abs(lower), 1.0))
+        self._fixed = np.flatnonzero(upper - lower < least)
+        self._values = lower[self._fixed]
+        self._lower, self._upper = lower.copy(), upper.copy()
+        self._lower[self._fixed] -= least[self._fixed]
+        self._upper[self._fixed] += least[self._fixed]
         self._error, self._turn = np.zeros(6), np.zeros(4)
         self._offset, self._rotation = self._error[:3], self._error[3:]
         self._gradient, self._hessian = np.zeros(n), np.zeros((n, n))
@@ -139,6 +145,8 @@ class Descent:
             else:
                 trust *= SHRINK
             q = best + self._minimise(best, trust)
+            if len(self._fixed):
+                q[self._fixed] = self._values
         return DescentEnd(best, math.sqrt(off_m), math.sqrt(off_rad), steps)
 
     def _evaluate(self, target: Target, q: Array) -> tuple[float, float]:

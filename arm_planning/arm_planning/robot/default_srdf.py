@@ -37,7 +37,8 @@ def default_srdf(robot: Robot) -> Srdf:
     tree = _Tree(robot)
     grippers = list(tree.grippers())
     fingers = {joint.name for gripper in grippers for joint in gripper.joints}
-    chains = tree.chains(fingers)
+    # The first one moves where nobody names a group: an arm, not a wheel.
+    chains = sorted(tree.chains(fingers), key=len, reverse=True)
     names = _chain_names(chains)
     groups: dict[str, SrdfGroup] = {}
     states: dict[Pair, Mapping[str, tuple[float, ...]]] = {}

@@ -120,6 +120,20 @@ def test_a_limited_joint_of_several_turns_stays_inside_its_limits():
     assert found == pytest.approx([math.tau - 1.0], abs=1e-4)
 
 
+@pytest.mark.parametrize("value", [0.0, 0.7, -900.0])
+def test_a_joint_that_must_not_move_stays(value):
+    parts = (
+        joint("locked", "l0", "l1", limits=(value, value)),
+        joint("elbow", "l1", "l2", xyz="0 0 0.4"),
+        joint("tip", "l2", "l3", xyz="0 0 0.4", kind="fixed", limits=None),
+    )
+    arm = parse_urdf(robot(*(link(f"l{n}") for n in range(4)), *parts))
+    kinematics = InverseKinematics.for_link(arm, "l3", ("locked", "elbow"))
+    found = kinematics.solve(kinematics.pose((value, 1.2)), (value, -0.2))
+    assert found == pytest.approx((value, 1.2), abs=1e-5)
+    assert found[0] == value
+
+
 def test_mimic_joints_follow_their_leaders():
     elbow = joint("e", "l1", "l2", "<mimic joint='s' multiplier='-2' offset='0.3'/>", xyz="0 0 0.4")
     shoulder = joint("s", "l0", "l1")

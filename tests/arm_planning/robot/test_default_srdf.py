@@ -55,6 +55,17 @@ def test_a_plain_arm_is_one_group_with_its_home():
     assert model.states["arm", "home"] == dict.fromkeys(arm.joints, 0.0)
 
 
+def test_an_arm_comes_before_the_wheels_below_it():
+    wheels = [
+        part
+        for name in ("w1", "w2")
+        for part in (link(name), joint(f"{name}_turn", "base", name, kind="continuous"))
+    ]
+    _, _, model = read(link("base"), *wheels, *serial("j", 4, "base"))
+    assert list(model.groups) == ["arm", "w1", "w2"]
+    assert model.default_group().name == "arm"
+
+
 def test_home_is_the_limit_next_to_zero_where_zero_is_out_of_reach():
     parts = [link("base"), link("a"), joint("j", "base", "a", limits=(0.5, 2.0))]
     assert read(*parts)[2].states["arm", "home"] == {"j": 0.5}
