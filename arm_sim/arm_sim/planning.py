@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
+from numbers import Integral, Real
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -72,8 +73,9 @@ class MotionPlanning:
 
         Raises:
             PlanningError: there is no such motion.
-            CallError: the goal is not a goal.
+            CallError: the goal is not a goal, or an option is not usable.
         """
+        _check_options(speed, allowed_time_s, seed)
         model = self._planner.model
         root = self._root()
         chains = [each.name for each in model.groups.values() if each.tip]
@@ -137,8 +139,27 @@ class MotionPlanning:
         return objects_of_solids(solids, world)
 
 
+def _check_options(speed: float, allowed_time_s: float, seed: int) -> None:
+    """Refuse what MoveIt replaces by defaults: at full speed instead of none, a robot is dangerous.
+
+    Raises:
+        CallError: an option is not usable.
+    """
+    if not (isinstance(speed, Real) and 0.0 < speed <= 1.0):
+        raise CallError(f"the speed is {speed!r}; it is a fraction above 0, and at most 1")
+    if not (isinstance(allowed_time_s, Real) and allowed_time_s > 0.0):
+        raise CallError(f"the time to plan in is {allowed_time_s!r}; it is a number above 0, in s")
+    if not (isinstance(seed, Integral) and seed >= 0):
+        raise CallError(f"the seed is {seed!r}; it is a whole number from 0")
+
+
 def _goal(goal: MotionGoal, root: RigidTransform) -> Mapping[str, float] | str | RigidTransform:
-    if isinstance(goal, Mapping | str):
+    if isinstance(goal, str):
+        return goal
+    if isinstance(goal, Mapping):
+        for joint, position in goal.items():
+            if not isinstance(position, Real):
+                raise CallError(f"the position of joint '{joint}' is {position!r}, not a number")
         return goal
     if goal is None:
         raise CallError("a goal is joint positions by name, the name of a state, or a pose")

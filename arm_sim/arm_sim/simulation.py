@@ -201,7 +201,7 @@ class Simulation:
 
         Raises:
             PlanningError: there is no such motion; the message says why.
-            CallError: the goal is not a goal.
+            CallError: the goal is not a goal, or an option is not usable.
         """
         return self._planning.plan(
             goal, group, link=link, speed=speed, allowed_time_s=allowed_time_s, seed=seed

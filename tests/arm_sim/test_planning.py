@@ -97,6 +97,24 @@ def test_goals_that_are_none_end_in_a_sentence(sim):
         sim.plan(None)
     with pytest.raises(PlanningError, match="no group 'leg'; the robot has arm"):
         sim.plan("home", "leg")
+    with pytest.raises(CallError, match="joint 'link1_to_link2' is 'far', not a number"):
+        sim.plan({"link1_to_link2": "far"})
+
+
+@pytest.mark.parametrize("value", [0, -1, float("nan"), "slow"])
+@pytest.mark.parametrize(
+    ("option", "what"), [("speed", "speed"), ("allowed_time_s", "time to plan in")]
+)
+def test_a_speed_or_a_time_that_is_no_positive_number_is_refused(sim, option, what, value):
+    with pytest.raises(CallError, match=f"the {what} is {value!r}; it is a "):
+        sim.plan("ready", **{option: value})
+
+
+def test_speeds_above_the_limits_and_seeds_that_are_none_are_refused(sim):
+    with pytest.raises(CallError, match="the speed is 2; it is a fraction above 0, and at most 1"):
+        sim.plan("ready", speed=2)
+    with pytest.raises(CallError, match="the seed is -1; it is a whole number from 0"):
+        sim.plan("ready", seed=-1)
 
 
 def test_a_trajectory_alone_needs_joints_that_a_controller_drives(sim):
