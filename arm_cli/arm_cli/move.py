@@ -85,10 +85,6 @@ def move(options: argparse.Namespace) -> None:
 def _group(model: "PlanningModel", name: str) -> "JointGroup":
     from arm_planning.errors import PlanningError
 
-    if not name:
-        return next((group for group in model.groups.values() if group.tip), None) or next(
-            iter(model.groups.values())
-        )
     try:
         return model.group(name) if name else model.default_group()
     except PlanningError as error:

@@ -78,9 +78,8 @@ class MotionPlanning:
         _check_options(speed, allowed_time_s, seed)
         model = self._planner.model
         root = self._root()
-        chains = [each.name for each in model.groups.values() if each.tip]
         motion = self._planner.move(
-            group or next(iter([*chains, *model.groups])),
+            group or model.default_group().name,
             _goal(goal, root),
             link=link,
             allowed_time_s=allowed_time_s,

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from robots import link, robot
 
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
@@ -115,6 +116,13 @@ def test_speeds_above_the_limits_and_seeds_that_are_none_are_refused(sim):
         sim.plan("ready", speed=2)
     with pytest.raises(CallError, match="the seed is -1; it is a whole number from 0"):
         sim.plan("ready", seed=-1)
+
+
+def test_a_robot_without_joints_has_nothing_to_move(tmp_path):
+    file = tmp_path / "block.urdf"
+    file.write_text(robot(link("block")))
+    with Simulation(str(file)) as still:
+        assert str(refusal(still, {})) == "the robot has no group to move"
 
 
 def test_a_trajectory_alone_needs_joints_that_a_controller_drives(sim):

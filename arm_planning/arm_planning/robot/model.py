@@ -101,7 +101,9 @@ class PlanningModel:
             PlanningError: INVALID_GROUP_NAME: the robot has no group.
         """
         if not self.groups:
-            raise PlanningError(MoveItErrorCode.INVALID_GROUP_NAME, "the robot has no group")
+            raise PlanningError(
+                MoveItErrorCode.INVALID_GROUP_NAME, "the robot has no group to move"
+            )
         groups = self.groups.values()
         return next((group for group in groups if group.tip), None) or next(iter(groups))
 

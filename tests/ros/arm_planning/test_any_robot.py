@@ -41,3 +41,11 @@ def test_arm_move_plans_and_moves_it(launch, client, urdf):
         return dict(zip(last.name, last.position, strict=True)) == pytest.approx(wanted, abs=0.01)
 
     states.wait_until(are_there, f"the joints at {wanted}")
+
+
+def test_arm_move_says_that_a_robot_without_joints_has_nothing_to_move(launch, tmp_path):
+    file = tmp_path / "block.urdf"
+    file.write_text(robot(link("block", box("visual", "collision"))))
+    launch(str(file), "planning:=true").wait_until_ready()
+    with closing(Program([sys.executable, "-m", "arm_cli", "move", "--state", "home"])) as program:
+        assert "arm move: the robot has no group to move" in program.fail()
