@@ -187,14 +187,6 @@ def position_of(message: Any, joint: str) -> float:
 
 
 @pytest.fixture(scope="module")
-def launched(launch_for_file: Callable[..., Program]) -> Program:
-    """Return `arm launch mycobot planning:=true`, ready."""
-    program = launch_for_file("mycobot", "planning:=true")
-    program.wait_until_ready()
-    return program
-
-
-@pytest.fixture(scope="module")
 def planning_for_file(launched: Program, client_for_file: Any) -> Planning:
     """Return the client of the whole file."""
     return Planning(client_for_file)

@@ -245,6 +245,8 @@ def test_a_link_carries_the_dock_to_another_browser_which_keeps_its_tab(dock, pa
     third.get_by_role("tab", name="System", exact=True, selected=True).wait_for(state="attached")
     # Viser would put a server that it cannot reach into the address.
     assert third.url == f"{page_url}/#tab=System"
+    other.close()
+    third.close()
 
 
 @pytest.mark.parametrize("size", SIZES.values(), ids=SIZES)

@@ -83,7 +83,9 @@ def crate_on_the_floor(simulation, client_for_file):
 @pytest.fixture(params=SIZES)
 def user(request, page_at, page_url):
     """Return a user of the page in a window of each size."""
-    return PageUser(page_at(page_url, viewport=SIZES[request.param]))
+    page = page_at(page_url, viewport=SIZES[request.param])
+    yield PageUser(page)
+    page.close()
 
 
 @pytest.fixture

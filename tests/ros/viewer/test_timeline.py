@@ -189,6 +189,7 @@ def test_recorded_contacts_are_drawn_like_live_ones(new_timeline, size):
     timeline.switch("Contacts", False)
     timeline.wait_until(lambda: timeline.contacts() == [], "it is not shown any more")
     assert "nothing here moves a robot" in timeline.text("arm-banner"), "nothing was refused"
+    timeline.page.close()
 
 
 def test_space_plays_and_the_end_is_the_end(timeline):

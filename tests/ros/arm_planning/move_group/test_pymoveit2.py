@@ -10,8 +10,7 @@ from programs import Program
 pytestmark = pytest.mark.ros
 
 
-def test_a_program_of_pymoveit2_works_as_it_is(launch):
-    launch("mycobot", "planning:=true").wait_until_ready()
+def test_a_program_of_pymoveit2_works_as_it_is(planning):
     script = Path(__file__).with_name("pymoveit2_client.py")
     with closing(Program([sys.executable, str(script)])) as program:
         words = dict(line.split(maxsplit=1) for line in program.succeed().splitlines() if line)

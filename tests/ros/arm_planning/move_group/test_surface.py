@@ -7,7 +7,7 @@ import pytest
 
 pytestmark = pytest.mark.ros
 
-PAGE = Path(__file__).parents[3] / "docs" / "reference" / "moveit.md"
+PAGE = Path(__file__).parents[4] / "docs" / "reference" / "moveit.md"
 EVERY_NODE_HAS = ("rcl_interfaces/", "type_description_interfaces/")
 TOPICS_OF_EVERY_NODE = ("/rosout", "/parameter_events", "/clock")
 NODE, SCENE_NODE = "move_group", "move_group_private_"
