@@ -122,4 +122,5 @@ def _new(path_of: PathOf, number: int) -> Path:
 
 
 def _is_full(path: Path, limit_mb: int) -> bool:
-    return path.stat().st_size >= limit_mb * BYTES_IN_MB
+    # A video that is still shorter than what its encoder looks ahead is not on the disk.
+    return path.exists() and path.stat().st_size >= limit_mb * BYTES_IN_MB

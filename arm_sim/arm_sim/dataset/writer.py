@@ -1,7 +1,4 @@
-"""Writes demonstrations in LeRobot's dataset format v3.0, without LeRobot itself.
-
-LeRobot normalises the inputs of policies with the statistics of features that stand in a dataset.
-"""
+"""Writes demonstrations in LeRobot's dataset format v3.0, without LeRobot itself."""
 
 import json
 import shutil
@@ -9,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Self, TypeAlias
+from typing import Any, Self
 
 import numpy as np
 import pyarrow as pa
@@ -19,85 +16,9 @@ from numpy.typing import NDArray
 from arm_sim.dataset import layout
 from arm_sim.dataset.alignment import Alignment
 from arm_sim.dataset.shared_files import FilePlace, PathOf, TableFiles, VideoFiles
+from arm_sim.dataset.statistics import ImageCounts, Statistics, images_to_sample, statistics_of
 from arm_sim.dataset.streams import CameraStream, Samples, Stream, stamp_feature
 from arm_sim.errors import CallError
-
-Array = NDArray[np.float64]
-Statistics: TypeAlias = Mapping[str, Array]
-QUANTILES = {"q01": 0.01, "q10": 0.1, "q50": 0.5, "q90": 0.9, "q99": 0.99}
-MOST_IMAGES, FEWEST_IMAGES = 10_000, 100
-LARGE_PX, WANTED_PX = 300, 150
-
-
-def statistics_of(values: NDArray[np.generic]) -> dict[str, Array]:
-    """Return the statistics of rows, shape (m, n), each of shape (n,), `count` of shape (1,)."""
-    rows = np.asarray(values, dtype=np.float64)
-    found = {
-        "min": rows.min(axis=0),
-        "max": rows.max(axis=0),
-        "mean": rows.mean(axis=0),
-        "std": rows.std(axis=0),
-        "count": np.array([len(rows)]),
-    }
-    for name, share in QUANTILES.items():
-        found[name] = np.quantile(rows, share, axis=0)
-    return found
-
-
-def images_to_sample(count: int) -> NDArray[np.int64]:
-    """Return the indices of the images that an episode's statistics use, evenly spread."""
-    wanted = max(min(FEWEST_IMAGES, count), min(int(count**0.75), MOST_IMAGES))
-    return np.unique(np.round(np.linspace(0, count - 1, wanted)).astype(np.int64))
-
-
-def image_statistics(images: Sequence[NDArray[np.uint8]]) -> dict[str, Array]:
-    """Return the statistics of images (h, w, 3) by channel, scaled to 0..1, shape (3, 1, 1)."""
-    size = max(images[0].shape[:2])
-    stride = max(1, size // WANTED_PX) if size >= LARGE_PX else 1
-    channels = np.concatenate([image[::stride, ::stride].reshape(-1, 3) for image in images]).T
-    each = [_statistics_of_bytes(np.bincount(channel, minlength=256)) for channel in channels]
-    found = {name: np.array([one[name] for one in each]).reshape(-1, 1, 1) for name in each[0]}
-    found["count"] = np.array([len(images)])
-    return found
-
-
-def _statistics_of_bytes(counts: NDArray[np.int64]) -> dict[str, float]:
-    """Return the statistics of values k / 255 from how often each k occurs, shape (256,)."""
-    values, total, until = np.arange(256) / 255.0, int(counts.sum()), np.cumsum(counts)
-    mean = float(counts @ values) / total
-    found = {
-        "min": float(values[counts > 0][0]),
-        "max": float(values[counts > 0][-1]),
-        "mean": mean,
-        "std": float(np.sqrt(counts @ (values - mean) ** 2 / total)),
-    }
-    for name, share in QUANTILES.items():
-        # Between the two values nearest to the place, as numpy's quantile.
-        place = share * (total - 1)
-        low, high = np.searchsorted(until, [int(place), int(np.ceil(place))], side="right")
-        found[name] = float(values[low] + (place - int(place)) * (values[high] - values[low]))
-    return found
-
-
-def merged(episodes: Sequence[Statistics]) -> dict[str, Array]:
-    """Return the statistics of several episodes; quantiles are averaged, as in LeRobot."""
-    counts = np.array([float(one["count"][0]) for one in episodes])
-    shares = counts / counts.sum()
-
-    def mean(values: Sequence[Array]) -> Array:
-        return sum((share * one for share, one in zip(shares, values, strict=True)), np.zeros(()))
-
-    overall = mean([one["mean"] for one in episodes])
-    spread = mean([one["std"] ** 2 + (one["mean"] - overall) ** 2 for one in episodes])
-    return {
-        "min": np.min([one["min"] for one in episodes], axis=0),
-        "max": np.max([one["max"] for one in episodes], axis=0),
-        "mean": overall,
-        "std": np.sqrt(spread),
-        "count": np.array([int(counts.sum())]),
-        **{name: mean([one[name] for one in episodes]) for name in QUANTILES},
-    }
-
 
 Column = NDArray[np.generic]
 
@@ -127,6 +48,7 @@ class DatasetWriter:
         self._tasks: list[str] = []
         self._episodes: list[dict[str, Any]] = []
         self._statistics: list[dict[str, Statistics]] = []
+        self._images: dict[str, ImageCounts] = {}
         self._provenance: list[dict[str, Any]] = []
         self._frames = 0
         self._tables: dict[str, TableFiles] = {}
@@ -222,7 +144,11 @@ class DatasetWriter:
             len(self._tasks),
         )
         overall = {
-            name: _plain(merged([one[name] for one in self._statistics]))
+            name: _plain(
+                self._images[name].statistics()
+                if name in self._images
+                else statistics_of(self._all_rows(name))
+            )
             for name in self._statistics[0]
         }
         self._write_json(layout.INFO, info)
@@ -231,6 +157,14 @@ class DatasetWriter:
         self._write(layout.TASKS, _tasks_table(self._tasks))
         self._write(layout.EPISODES_PATH, self._episodes_table())
         self._work.rename(self._folder)
+
+    def _all_rows(self, name: str) -> Column:
+        """Return the column of a feature in all episodes, from the written files."""
+        column = pq.read_table(self._work / "data", columns=[name])[name]
+        values = column.combine_chunks()
+        if pa.types.is_fixed_size_list(values.type):
+            values = values.flatten()
+        return values.to_numpy(zero_copy_only=False).reshape(len(column), -1)
 
     def _check(self, features: dict[str, Any], fps: int) -> None:
         if not self._features:
@@ -293,7 +227,13 @@ class DatasetWriter:
             path_of = self._path_of(layout.VIDEO_PATH, video_key=camera.name)
             self._videos[camera.name] = VideoFiles(path_of, camera.height, camera.width, self._fps)
         place = self._videos[camera.name].add(frames(), len(rows))
-        return place, image_statistics(kept)
+        counts = ImageCounts(kept)
+        statistics = counts.statistics()
+        if camera.name in self._images:
+            self._images[camera.name].add(counts)
+        else:
+            self._images[camera.name] = counts
+        return place, statistics
 
     def _write_stream(self, stream: Samples) -> None:
         """Write all numbers of a stream at their own stamps."""

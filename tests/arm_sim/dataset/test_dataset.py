@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from arm_sim import CallError
 from arm_sim.dataset import CameraStream, DatasetWriter, Samples, align, check_dataset, shared_files
-from arm_sim.dataset.writer import image_statistics, merged, statistics_of
+from arm_sim.dataset.statistics import ImageCounts, statistics_of
 
 MS = 1_000_000
 START = 5_000 * MS
@@ -104,21 +104,10 @@ def test_values_that_are_not_finite_are_refused():
         align([wrong], 0)
 
 
-def test_statistics_of_parts_merge_into_those_of_the_whole():
-    random = np.random.default_rng(0)
-    one, other = random.normal(size=(50, 3)), random.normal(2.0, 3.0, (150, 3))
-    whole, parts = (
-        statistics_of(np.concatenate([one, other])),
-        merged([statistics_of(one), statistics_of(other)]),
-    )
-    for name in ("min", "max", "mean", "std", "count"):
-        assert parts[name] == pytest.approx(whole[name])
-
-
 def test_statistics_of_images_are_by_channel_in_shares_of_white():
     image = np.zeros((400, 400, 3), dtype=np.uint8)
     image[..., 1] = 255
-    found = image_statistics([image])
+    found = ImageCounts([image]).statistics()
     assert found["mean"].tolist() == [[[0.0]], [[1.0]], [[0.0]]]
 
 
@@ -126,9 +115,24 @@ def test_statistics_of_images_are_by_channel_in_shares_of_white():
 def test_statistics_of_images_are_those_of_their_values(reds: list[int]):
     image = np.zeros((1, len(reds), 3), dtype=np.uint8)
     image[0, :, 0] = reds
-    found, wanted = image_statistics([image]), statistics_of(np.array(reds)[:, None] / 255.0)
+    found, wanted = (
+        ImageCounts([image]).statistics(),
+        statistics_of(np.array(reds)[:, None] / 255.0),
+    )
     for name in wanted.keys() - {"count"}:
         assert found[name][0, 0, 0] == pytest.approx(wanted[name][0], abs=1e-9), name
+
+
+@given(st.lists(st.integers(0, 255), min_size=2, max_size=60), st.data())
+def test_counts_of_parts_add_up_to_those_of_the_whole(reds: list[int], data: st.DataObject):
+    cut = data.draw(st.integers(1, len(reds) - 1))
+    images = [np.full((1, 1, 3), red, dtype=np.uint8) for red in reds]
+    parts = ImageCounts(images[:cut])
+    parts.add(ImageCounts(images[cut:]))
+    found, wanted = parts.statistics(), ImageCounts(images).statistics()
+    assert {name: one.tolist() for name, one in found.items()} == {
+        name: one.tolist() for name, one in wanted.items()
+    }
 
 
 @pytest.fixture
@@ -160,6 +164,24 @@ def test_a_dataset_keeps_the_format(written: Path):
     source = json.loads((written / "meta/arm_suite.json").read_text())["episodes"][1]
     assert source["source"] == {"bag": "bag1000"}
     assert source["streams"][2]["repeated"] == 5
+
+
+def test_the_statistics_of_a_dataset_are_those_of_all_its_frames(tmp_path: Path):
+    lengths = (2, 6, 3)
+    with DatasetWriter(tmp_path / "demo", "arm") as writer:
+        for count in lengths:
+            times = [50 * k for k in range(count)]
+            add(writer, [camera(times), state(times)])
+        writer.finish()
+    found = json.loads((tmp_path / "demo/meta/stats.json").read_text())
+    rows = pq.read_table(tmp_path / "demo/data")["observation.state"].to_pylist()
+    images = [image for count in lengths for image in camera([0] * count).images()]
+    wanted = {
+        "observation.state": statistics_of(np.array(rows)),
+        "observation.images.front": ImageCounts(images).statistics(),
+    }
+    for feature, statistics in wanted.items():
+        assert found[feature] == {name: one.tolist() for name, one in statistics.items()}
 
 
 def test_the_frames_of_a_video_are_the_images_of_the_rows(written: Path):
