@@ -319,6 +319,14 @@ def client_for_file() -> Iterator[Client]:
     connected.close()
 
 
+@pytest.fixture(scope="session")
+def latched() -> Any:
+    """Return the QoS of a topic whose last message late subscribers get."""
+    from rclpy.qos import DurabilityPolicy, QoSProfile
+
+    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
 @pytest.fixture
 def client_in() -> Iterator[Callable[[int], Client]]:
     """Return a function that makes a client in a ROS domain."""

@@ -118,10 +118,9 @@ class TestAsItStarts:
         assert np.allclose([m.position for m in held], POSE, atol=0.01)
         assert len(commands.wait_for(1)) == 1
 
-    def test_stamps_are_simulation_time_and_follow_the_clock(self, client):
+    def test_stamps_are_simulation_time_and_follow_the_clock(self, client, latched):
         from controller_manager_msgs.msg import ControllerManagerActivity
         from diagnostic_msgs.msg import DiagnosticArray
-        from rclpy.qos import DurabilityPolicy, QoSProfile
         from rosgraph_msgs.msg import Clock
         from sensor_msgs.msg import JointState
 
@@ -143,7 +142,6 @@ class TestAsItStarts:
         assert not any(step % 10_000_000 for step in steps_ns)
         assert set(state_ns) & set(clock_ns)
         # The manager's own messages use the same clock.
-        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         reports = client.subscribe(DiagnosticArray, "/diagnostics")
         activity = client.subscribe(
             ControllerManagerActivity, "/controller_manager/activity", latched

@@ -154,15 +154,13 @@ def test_one_robot_stops_and_the_other_goes_on(arms, goals, client):
     assert ended.status == GoalStatus.STATUS_SUCCEEDED, ended.result.error_string
 
 
-def test_all_stop_by_the_topic_and_are_released_by_the_verb(arms, client):
-    from rclpy.qos import DurabilityPolicy, QoSProfile
+def test_all_stop_by_the_topic_and_are_released_by_the_verb(arms, client, latched):
     from std_msgs.msg import Bool, Float64MultiArray
 
     commands = client.publisher(Float64MultiArray, "/right/mover/commands")
     stop = client.publisher(Bool, "/emergency_stop")
     arms.move("right", lambda: commands.publish(Float64MultiArray(data=[-0.6] * len(LEFT))))
     stop.publish(Bool(data=True))
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     told = client.subscribe(Bool, "/emergency_stop/active", latched)
     told.wait_until(lambda m: bool(m) and m[-1].data, "the news of the stop")
     client.wait_until(lambda: arms.is_at_rest("right"), "the right arm at rest")

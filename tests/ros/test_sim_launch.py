@@ -70,7 +70,7 @@ def test_a_robot_without_hardware_and_controllers_moves(launch, client, bare, sd
 
 
 def test_a_user_s_package_is_not_shadowed_by_the_suite_s_package_of_that_name(
-    launch, client, tmp_path
+    launch, client, tmp_path, latched
 ):
     from std_msgs.msg import String
 
@@ -95,16 +95,9 @@ def test_a_user_s_package_is_not_shadowed_by_the_suite_s_package_of_that_name(
         "arm_gazebo", "sim.launch.py", f"model:={package / 'bare.urdf'}", "strict:=true"
     )
     launched.wait_until_ready()
-    description = client.subscribe(String, "/robot_description", latched()).wait_for(1)[-1].data
+    description = client.subscribe(String, "/robot_description", latched).wait_for(1)[-1].data
     finder = ResourceFinder.of_description(description)
     assert {finder.find(uri) for uri in uris} == {package / "meshes/wedge.obj"}
-
-
-def latched():
-    """Return the QoS of a description."""
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-
-    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def test_a_mast_s_camera_publishes_pictures(launch, client, tmp_path):

@@ -177,11 +177,9 @@ def test_the_camera_sees_a_spawned_entity(simulator, client):
     assert red(seen[-1]) < 0.01
 
 
-def test_markers_show_the_world(simulator, client):
-    from rclpy.qos import DurabilityPolicy, QoSProfile
+def test_markers_show_the_world(simulator, client, latched):
     from visualization_msgs.msg import Marker, MarkerArray
 
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     arrays = client.subscribe(MarkerArray, "/world_markers", latched)
 
     def of(owner: str, messages: list) -> list[Marker]:
@@ -205,11 +203,9 @@ def test_markers_show_the_world(simulator, client):
     )
 
 
-def test_contacts_are_markers_while_somebody_subscribes(simulator, client):
-    from rclpy.qos import DurabilityPolicy, QoSProfile
+def test_contacts_are_markers_while_somebody_subscribes(simulator, client, latched):
     from visualization_msgs.msg import Marker, MarkerArray
 
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     arrays = client.subscribe(MarkerArray, "/contact_markers", latched)
 
     def lines(messages: list) -> list[str]:

@@ -75,14 +75,6 @@ def set_parameters(client) -> Callable[..., list]:
 
 
 @pytest.fixture
-def latched() -> Any:
-    """Return the QoS of a topic whose last message late subscribers get."""
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-
-    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-
-@pytest.fixture
 def send(client) -> Callable[..., None]:
     """Publish a joint state: stamp in seconds, positions by name."""
     from sensor_msgs.msg import JointState

@@ -71,10 +71,3 @@ def new_viewer():
     yield create
     for viewer in spun:
         viewer.close()
-
-
-@pytest.fixture
-def latched():
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-
-    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

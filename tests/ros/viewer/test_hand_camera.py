@@ -80,7 +80,7 @@ def crate_on_the_floor(simulation, client_for_file):
     assert answer.result.result == Result.RESULT_OK, answer
 
 
-@pytest.fixture(params=SIZES)
+@pytest.fixture(scope="module", params=SIZES)
 def user(request, page_at, page_url):
     """Return a user of the page in a window of each size."""
     page = page_at(page_url, viewport=SIZES[request.param])

@@ -338,11 +338,9 @@ def nothing_but_faces_is_drawn(visitor) -> bool:
     return visitor.drawn()["instances"] == before["instances"]
 
 
-def test_controllers_are_deactivated_and_activated(visitor, client):
+def test_controllers_are_deactivated_and_activated(visitor, client, latched):
     from controller_manager_msgs.msg import ControllerManagerActivity
-    from rclpy.qos import DurabilityPolicy, QoSProfile
 
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     activity = client.subscribe(ControllerManagerActivity, "/controller_manager/activity", latched)
 
     def state() -> str:

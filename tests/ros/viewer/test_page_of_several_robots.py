@@ -123,11 +123,9 @@ def test_a_loaded_controller_is_configured_then_activated(visitor, client):
     visitor.open_tab("Robot")
 
 
-def test_a_displayed_robot_is_centred_and_put_anywhere(visitor, client, positions):
-    from rclpy.qos import DurabilityPolicy, QoSProfile
+def test_a_displayed_robot_is_centred_and_put_anywhere(visitor, client, positions, latched):
     from std_msgs.msg import String
 
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     client.node.create_publisher(String, "/robot_description", latched).publish(
         String(data=DISPLAYED)
     )

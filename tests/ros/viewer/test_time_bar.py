@@ -97,12 +97,10 @@ def state(client):
 
 
 @pytest.fixture
-def stopped(client):
+def stopped(client, latched):
     """Collect what /emergency_stop/active says."""
-    from rclpy.qos import DurabilityPolicy, QoSProfile
     from std_msgs.msg import Bool
 
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     return client.subscribe(Bool, "/emergency_stop/active", latched)
 
 

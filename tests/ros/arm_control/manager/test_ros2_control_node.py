@@ -124,12 +124,10 @@ def waiting(run: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 @pytest.fixture
-def describe(client: Any) -> Callable[[str], None]:
+def describe(client: Any, latched: Any) -> Callable[[str], None]:
     """Return a function that publishes a description for the waiting manager."""
-    from rclpy.qos import DurabilityPolicy, QoSProfile
     from std_msgs.msg import String
 
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     publisher = client.node.create_publisher(String, "/waiting/robot_description", latched)
     return lambda text: publisher.publish(String(data=text))
 

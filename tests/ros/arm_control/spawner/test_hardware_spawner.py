@@ -5,7 +5,6 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
 pytestmark = pytest.mark.ros
@@ -61,7 +60,7 @@ ROBOT = (
 
 
 def test_spawners_wait_for_the_robot_description(
-    run: Any, spawn: Any, spawn_hardware: Any, client: Any, control_of: Any
+    run: Any, spawn: Any, spawn_hardware: Any, client: Any, control_of: Any, latched: Any
 ) -> None:
     namespace = ("--ros-args", "-r", "__ns:=/bare")
     type_name = "joint_state_broadcaster/JointStateBroadcaster"
@@ -77,7 +76,6 @@ def test_spawners_wait_for_the_robot_description(
         assert "Could not contact service /bare/controller_manager/list_" in spawner.fail()
     spawner = spawn("jsb", *namespace)
     spawner.wait_for_line("waiting for service /bare/controller_manager/list_controllers")
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     description = client.node.create_publisher(String, "/bare/robot_description", latched)
     description.publish(String(data=ROBOT))
     spawner.succeed()

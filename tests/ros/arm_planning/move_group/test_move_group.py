@@ -111,11 +111,9 @@ def test_topics_that_it_publishes_are_reliable(planning, topic, kind):
         assert all(each.qos_profile.durability == durable for each in found)
 
 
-def test_the_srdf_reaches_a_late_client(planning):
-    from rclpy.qos import DurabilityPolicy, QoSProfile
+def test_the_srdf_reaches_a_late_client(planning, latched):
     from std_msgs.msg import String
 
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     heard = planning.client.subscribe(String, "/robot_description_semantic", latched)
     assert '<group name="arm">' in heard.wait_for(1)[0].data.replace("'", '"')
 

@@ -208,12 +208,10 @@ def test_query_state_answers_while_paused(
 
 
 def test_speed_scaling_stops_the_trajectory_and_lets_it_go_on(
-    active: Any, client: Any, send: Any, states: Any
+    active: Any, client: Any, send: Any, states: Any, latched: Any
 ) -> None:
     from control_msgs.msg import SpeedScalingFactor
-    from rclpy.qos import DurabilityPolicy, QoSProfile
 
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     publisher = client.publisher(SpeedScalingFactor, f"/{NAME}/speed_scaling_input", latched)
     publisher.publish(SpeedScalingFactor(factor=0.0))
     states.wait_until(
