@@ -155,6 +155,16 @@ class Planning:
         message = self.joint_states.wait_for(1)[-1]
         return dict(zip(message.name, message.position, strict=True))
 
+    def is_free(self, positions: Mapping[str, float]) -> bool:
+        """Return whether the arm touches nothing at these positions."""
+        from moveit_msgs.srv import GetStateValidity
+
+        request = GetStateValidity.Request(group_name="arm")
+        request.robot_state.is_diff = True
+        state = request.robot_state.joint_state
+        state.name, state.position = list(positions), list(positions.values())
+        return self.call("/check_state_validity", request).valid
+
     def joint_moves(self, joint: str, by: float) -> None:
         """Block until a joint has moved from where it is now."""
         before = self.positions()[joint]
@@ -165,14 +175,14 @@ class Planning:
 
         self.joint_states.wait_until(has_moved, f"{joint} moves by {by}")
 
-    def stands_still(self) -> dict[str, float]:
-        """Block until twenty joint states in a row are the same; return the positions."""
+    def stands_still(self, within: float = 1e-4) -> dict[str, float]:
+        """Block until twenty joint states in a row are this near, in rad; return the positions."""
         self.joint_states.clear()
 
         def still(messages: list) -> bool:
             last = messages[-20:]
             return len(last) == 20 and all(
-                abs(position_of(each, joint) - position_of(last[0], joint)) < 1e-4
+                abs(position_of(each, joint) - position_of(last[0], joint)) < within
                 for each in last
                 for joint in ARM_JOINTS
             )

@@ -175,8 +175,6 @@ def test_the_same_request_gives_the_same_trajectory(planning, request_of, joint_
 def test_a_plan_leads_around_a_box_that_came_by_topic(
     planning, request_of, joint_goal, joints, box
 ):
-    from moveit_msgs.srv import GetStateValidity
-
     request = request_of(joint_goal(joints(0.9, -1.2)), start=joints(-0.9, -1.2))
     direct = planning.plan(request)
     assert direct.error_code.val == SUCCESS, direct.error_code.message
@@ -190,9 +188,7 @@ def test_a_plan_leads_around_a_box_that_came_by_topic(
     assert around.error_code.val == SUCCESS, around.error_code.message
 
     def valid(point: Any) -> bool:
-        check = GetStateValidity.Request(group_name="arm")
-        set_state(check.robot_state, dict(zip(joints(), point.positions, strict=True)))
-        return planning.call("/check_state_validity", check).valid
+        return planning.is_free(dict(zip(joints(), point.positions, strict=True)))
 
     assert not all(valid(point) for point in points(direct))
     assert all(valid(point) for point in points(around))
