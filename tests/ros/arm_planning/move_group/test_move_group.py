@@ -535,6 +535,22 @@ def test_a_straight_path_with_a_bad_step_or_frame_is_refused(planning, joints):
     assert "Unknown frame: nonsense" in answer.error_code.message
 
 
+def test_forty_requests_at_once_are_all_answered(planning: Any):
+    from moveit_msgs.srv import GetStateValidity
+    from rclpy.qos import QoSProfile
+
+    client, name = planning.client, "/check_state_validity"
+    # With the usual ten, the client itself loses answers.
+    service = client.node.create_client(GetStateValidity, name, qos_profile=QoSProfile(depth=100))
+    client.wait_until(service.service_is_ready, name)
+    client.be_known_to_server(name)
+    request = GetStateValidity.Request(group_name="arm")
+    request.robot_state.is_diff = True
+    answers = client.run(lambda: [service.call_async(request) for _ in range(40)], name)
+    client.wait_until(lambda: all(answer.done() for answer in answers), "forty answers")
+    assert len({answer.result().valid for answer in answers}) == 1
+
+
 def test_a_planners_parameters_are_set_and_told(planning: Any):
     from moveit_msgs.msg import PlannerParams
     from moveit_msgs.srv import GetPlannerParams, SetPlannerParams
