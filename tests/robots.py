@@ -9,6 +9,13 @@ MYCOBOT_ARM = (
     "link6_to_link6_flange",
 )
 """The joints of the myCobot's arm, which the package mycobot_description describes."""
+CAN = """<sdf version='1.9'><model name='can'><link name='body'>
+<inertial><mass>0.1</mass><inertia><ixx>1e-4</ixx><iyy>1e-4</iyy><izz>1e-4</izz></inertia></inertial>
+<collision name='shape'><geometry><box><size>0.06 0.06 0.1</size></box></geometry></collision>
+</link></model></sdf>"""
+"""A model that falls; of Gazebo's, not a robot."""
+TETRAHEDRON_OBJ = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+"""The smallest mesh."""
 
 
 def link(name: str, *inside: str, mass: float = 1.0) -> str:

@@ -3,17 +3,12 @@
 from pathlib import Path
 
 import pytest
+from robots import CAN
 
 from arm_gazebo.errors import RecordingError
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
 from arm_sim import CallError, Simulation
-
-CAN = """<sdf version='1.9'><model name='can'><link name='body'>
-<inertial><mass>0.1</mass><inertia><ixx>1e-4</ixx><iyy>1e-4</iyy><izz>1e-4</izz></inertia></inertial>
-<collision name='shape'><geometry><box><size>0.06 0.06 0.1</size></box></geometry></collision>
-</link></model></sdf>"""
-
 
 ARM = {"arguments": {"camera": "none"}}
 

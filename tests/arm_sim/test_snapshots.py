@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from robots import control, pendulum, sensor
+from robots import CAN, control, pendulum, sensor
 
 from arm_control.controllers.goals import GoalOutcome
 from arm_control.errors import StateError
@@ -12,10 +12,6 @@ from arm_gazebo.errors import RequestError
 from arm_sim import CallError, GoalError, JointTrajectory, Simulation
 
 FOLLOWER = "joint_trajectory_controller"
-CAN = """<sdf version='1.9'><model name='can'><link name='body'>
-<inertial><mass>0.1</mass><inertia><ixx>1e-4</ixx><iyy>1e-4</iyy><izz>1e-4</izz></inertia></inertial>
-<collision name='shape'><geometry><box><size>0.06 0.06 0.1</size></box></geometry></collision>
-</link></model></sdf>"""
 NOISE = """<always_on>1</always_on><imu><linear_acceleration><x><noise type='gaussian'>
 <mean>0</mean><stddev>0.1</stddev></noise></x></linear_acceleration></imu>"""
 NOISY = pendulum(

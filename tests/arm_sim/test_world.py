@@ -2,14 +2,10 @@
 
 import numpy as np
 import pytest
+from robots import CAN
 
 from arm_gazebo.errors import RequestError
 from arm_sim import CallError, Simulation
-
-CAN = """<sdf version='1.9'><model name='can'><link name='body'>
-<inertial><mass>0.1</mass><inertia><ixx>1e-4</ixx><iyy>1e-4</iyy><izz>1e-4</izz></inertia></inertial>
-<collision name='shape'><geometry><box><size>0.06 0.06 0.1</size></box></geometry></collision>
-</link></model></sdf>"""
 
 
 def test_a_spawned_thing_falls_and_rests_on_the_floor(sim: Simulation):

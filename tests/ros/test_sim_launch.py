@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from robots import TETRAHEDRON_OBJ
 
 pytestmark = pytest.mark.ros
 
@@ -79,9 +80,7 @@ def test_a_user_s_package_is_not_shadowed_by_the_suite_s_package_of_that_name(
     package = tmp_path / "arm_description"
     (package / "meshes").mkdir(parents=True)
     (package / "package.xml").write_text("<package><name>arm_description</name></package>")
-    (package / "meshes/wedge.obj").write_text(
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
-    )
+    (package / "meshes/wedge.obj").write_text(TETRAHEDRON_OBJ)
     uris = ("package://arm_description/meshes/wedge.obj", "meshes/wedge.obj")
     shapes = "".join(
         f'<visual><geometry><mesh filename="{uri}"/></geometry></visual>' for uri in uris

@@ -5,6 +5,7 @@ import os
 import mujoco
 import numpy as np
 import pytest
+from robots import TETRAHEDRON_OBJ
 
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import WorldError
@@ -194,9 +195,7 @@ def test_a_merged_model_has_no_separate_name(world):
 
 def test_a_model_beside_the_includer_is_found_without_any_path(world, monkeypatch, tmp_path):
     (tmp_path / "models/cup").mkdir(parents=True, exist_ok=True)
-    (tmp_path / "models/cup/wedge.obj").write_text(
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
-    )
+    (tmp_path / "models/cup/wedge.obj").write_text(TETRAHEDRON_OBJ)
     monkeypatch.delenv("GZ_SIM_RESOURCE_PATH")
     mesh = "<geometry><mesh><uri>model://cup/wedge.obj</uri></mesh></geometry>"
     compiled, _, report = world(

@@ -3,6 +3,7 @@
 import mujoco
 import numpy as np
 import pytest
+from robots import TETRAHEDRON_OBJ
 
 from arm_gazebo.build_report import BuildOutcome, BuildReport
 from arm_gazebo.errors import WorldError
@@ -260,9 +261,7 @@ def test_mesh_beside_its_file_is_found(world, write, tmp_path, monkeypatch):
         model("wedge", link=shape("<mesh><uri>wedge.obj</uri><scale>2 2 2</scale></mesh>")),
         "models/wedge/model.sdf",
     )
-    (tmp_path / "models/wedge/wedge.obj").write_text(
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
-    )
+    (tmp_path / "models/wedge/wedge.obj").write_text(TETRAHEDRON_OBJ)
     monkeypatch.setenv("GZ_SIM_RESOURCE_PATH", str(tmp_path / "models"))
     compiled, _, _ = world("<include><uri>model://wedge</uri></include>")
     assert set(compiled.geom_type) == {int(mujoco.mjtGeom.mjGEOM_MESH)}

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from robots import TETRAHEDRON_OBJ
 
 from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.world.spawn_model import ModelSource
@@ -220,9 +221,7 @@ def test_a_folder_of_an_sdf_model_will_do(things, tmp_path, monkeypatch):
 
 def test_an_mjcf_file_brings_its_meshes(tmp_path):
     (tmp_path / "meshes").mkdir()
-    (tmp_path / "meshes" / "pyramid.obj").write_text(
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
-    )
+    (tmp_path / "meshes" / "pyramid.obj").write_text(TETRAHEDRON_OBJ)
     file = tmp_path / "thing.xml"
     file.write_text(
         "<mujoco><asset><mesh name='p' file='meshes/pyramid.obj'/></asset><worldbody>"

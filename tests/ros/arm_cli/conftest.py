@@ -6,12 +6,15 @@ import subprocess
 import sys
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from forked import popen, words_of_arm
 
+from arm_cli.bag_format.reader import BagReader
+from arm_cli.errors import BagError
 from launch_py.fast_dds.removal import SharedMemoryLedger
 
 TIMEOUT_S = 120.0
@@ -181,6 +184,20 @@ def run_until(start: Callable[[str], CommandLine]) -> Callable[..., str]:
                 pytest.fail(f"{line}: exit code {ended}\n{command.out}\n{command.err}")
 
     return repeat
+
+
+@pytest.fixture(scope="session")
+def counts() -> Callable[[Path], Counter[str]]:
+    """Return a function that counts the messages in a bag, even while it is being recorded."""
+
+    def counts_of(bag: Path) -> Counter[str]:
+        try:
+            with BagReader(bag) as reader:
+                return Counter({topic.name: count for topic, count in reader.metadata.topics})
+        except BagError:
+            return Counter()
+
+    return counts_of
 
 
 @pytest.fixture(scope="module")

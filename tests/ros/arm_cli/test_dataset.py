@@ -7,9 +7,6 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-from arm_cli.bag_format.reader import BagReader
-from arm_cli.errors import BagError
-
 pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation_with_camera")]
 
 COMMAND = (
@@ -26,23 +23,14 @@ def commander(start):
     start(COMMAND).wait_for("publishing #1:")
 
 
-def recorded(bag: Path) -> Counter[str]:
-    """Return the messages in a bag, even while it is being recorded."""
-    try:
-        with BagReader(bag) as reader:
-            return Counter({topic.name: count for topic, count in reader.metadata.topics})
-    except BagError:
-        return Counter()
-
-
 def info_of(dataset: Path) -> dict:
     return json.loads((dataset / "meta/info.json").read_text())
 
 
 @pytest.mark.usefixtures("commander")
-def test_a_running_robot_is_recorded_as_a_dataset(start, run, tmp_path: Path):
+def test_a_running_robot_is_recorded_as_a_dataset(start, run, counts, tmp_path: Path):
     recorder, bag = start(RECORD), tmp_path / "wave_bags/episode_000000"
-    recorder.wait_until(lambda: recorded(bag) >= ENOUGH, "enough of every topic")
+    recorder.wait_until(lambda: counts(bag) >= ENOUGH, "enough of every topic")
     assert recorder.interrupt() == 0, recorder.err
     said = recorder.out + recorder.err
     assert "wrote wave: 1 episodes" in said

@@ -3,7 +3,6 @@
 import json
 import signal
 import time
-from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 
@@ -17,7 +16,6 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from arm_cli.bag_format.reader import BagReader
-from arm_cli.errors import BagError
 
 pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation")]
 
@@ -25,17 +23,8 @@ RECORDED = "/joint_states /tf /tf_static /robot_description"
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-def counts(bag: Path) -> Counter[str]:
-    """Return the messages in a bag, even while it is being recorded."""
-    try:
-        with BagReader(bag) as reader:
-            return Counter({topic.name: count for topic, count in reader.metadata.topics})
-    except BagError:
-        return Counter()
-
-
 @pytest.fixture(scope="module")
-def bag(tmp_path_factory, start_for_file, simulation) -> Path:
+def bag(tmp_path_factory, start_for_file, simulation, counts) -> Path:
     """A recording of some messages of each topic."""
     folder = tmp_path_factory.mktemp("recorded") / "bag"
     command = start_for_file(f"arm bag record {RECORDED} -o {folder}")
@@ -131,7 +120,7 @@ def test_play_in_a_loop_from_an_offset_until_ctrl_c(start, client, bag):
     assert "Playing stopped\n" in command.err
 
 
-def test_a_killed_recorder_leaves_a_bag(start, run, tmp_path):
+def test_a_killed_recorder_leaves_a_bag(start, run, counts, tmp_path):
     folder = tmp_path / "killed"
     command = start(f"arm bag record -a -o {folder}")
     both = {"/robot_description", "/joint_states"}
@@ -146,7 +135,7 @@ def test_a_killed_recorder_leaves_a_bag(start, run, tmp_path):
     run(f"arm bag play {folder} --rate 100 --topics /joint_states -m /joint_states:=/x")
 
 
-def test_record_waits_for_a_missing_topic(start, client, tmp_path):
+def test_record_waits_for_a_missing_topic(start, client, counts, tmp_path):
     folder = tmp_path / "late"
     command = start(f"arm bag record /joint_stats /late -o {folder}")
     command.wait_for("waiting for a publisher of /joint_stats on ROS_DOMAIN_ID=")
