@@ -232,7 +232,7 @@ def test_a_good_run_is_equal_to_its_end(timeline, size):
         )
         timeline.page.locator("#arm-timeline").wait_for(state="visible")
         assert timeline.text("arm-banner-kind") == "RECORDED RUN"
-        assert timeline.is_whole("arm-verdict")
+        timeline.wait_until(lambda: timeline.is_whole("arm-verdict"), "the verdict is whole")
         timeline.drag(0.5)
         timeline.until_near(timeline.moment_s, 0.1, 0.02)
         timeline.click("Back to live")
@@ -299,6 +299,7 @@ def test_a_run_plays_while_it_is_verified_and_only_what_is_equal_is_shown(timeli
 def test_a_verification_that_is_left_says_what_it_did_not_compare(timeline):
     timeline.open("long.run")
     timeline.page.locator("#arm-timeline").wait_for(state="visible")
+    timeline.wait_until(lambda: timeline.text("arm-run").startswith("… equal so far"), "equal")
     timeline.click("Back to live")
     said = timeline.says("verification stopped")
     found = re.fullmatch(
