@@ -24,6 +24,7 @@ class Blocked:
 
     segment: int
     fraction: float
+    away: np.ndarray | None = None
 
     def __str__(self) -> str:
         return f"the arm with a disc in segment {self.segment}"
@@ -58,8 +59,9 @@ class PlanarArm:
     def is_free(self, q: np.ndarray) -> bool:
         return self.clearance(q) > 0.0
 
-    def free_count(self, states: np.ndarray) -> int:
-        return sum(1 for _ in itertools.takewhile(self.is_free, states))
+    def free_count(self, states: np.ndarray, clearance_m: float = 0.0) -> int:
+        free = (self.clearance(q) > clearance_m for q in states)
+        return sum(itertools.takewhile(bool, free))
 
     def is_free_edge(self, a: np.ndarray, b: np.ndarray) -> bool:
         return self.prove(np.array([a, b])) is None
@@ -68,8 +70,12 @@ class PlanarArm:
         for segment, (a, b) in enumerate(itertools.pairwise(path)):
             fraction = self._obstruction(a, b - a, 0.0, 1.0)
             if fraction is not None:
-                return Blocked(segment, fraction)
+                return Blocked(segment, fraction, self._away(a + fraction * (b - a)))
         return None
+
+    def _away(self, q: np.ndarray) -> np.ndarray:
+        gains = [self.clearance(q + step) - self.clearance(q) for step in 1e-6 * np.eye(len(q))]
+        return np.array(gains) / np.linalg.norm(gains)
 
     def _obstruction(
         self, start: np.ndarray, change: np.ndarray, low: float, high: float

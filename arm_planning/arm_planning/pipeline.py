@@ -88,9 +88,9 @@ class SceneChecker:
         """Return whether the robot is free at positions of the group, (n,)."""
         return self.model.is_free(q)
 
-    def free_count(self, states: Array) -> int:
+    def free_count(self, states: Array, clearance_m: float = 0.0) -> int:
         """Return how many states, (k, n), are free before the first that is not."""
-        return self.model.free_count(states)
+        return self.model.free_count(states, clearance_m)
 
     def is_free_edge(self, a: Array, b: Array) -> bool:
         """Return whether all states on the straight line between two are free."""

@@ -107,16 +107,17 @@ class CollisionModel:
         mujoco.mj_collision(self._model, self._data)
         return self._data.ncon == 0
 
-    def free_count(self, states: Array) -> int:
+    def free_count(self, states: Array, clearance_m: float = 0.0) -> int:
         """Return how many states are free before the first that collides; all if none does.
 
         Args:
             states: positions of `joints`, (k, n), in the order in which they are looked at.
+            clearance_m: distance from which on two bodies collide.
 
         Raises:
             PlanningError: a position is not finite.
         """
-        return 0 if self._constant else self._posed.free_count(states)
+        return 0 if self._constant else self._posed.free_count(states, clearance_m)
 
     def contacts(self, q: Array) -> tuple[CollisionContact, ...]:
         """Return the deepest contact of each pair that collides, the deepest first.

@@ -8,8 +8,8 @@ environments", 2005). The proof goes along the path from one such interval to th
 intervals are short, the speeds in the state prove longer ones (`approach`).
 """
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from math import ceil, log
 
 import mujoco
@@ -52,12 +52,15 @@ class Obstruction:
         contact: what is there; its depth is negative if it is only too close. None if the proof
             gave up.
         reason: a sentence's end: "link3 with box1, 3 mm deep".
+        away: direction, (n,), in which the joints take the two apart soonest; None if the proof
+            gave up, or no joint moves them.
     """
 
     segment: int
     fraction: float
     contact: CollisionContact | None
     reason: str
+    away: Array | None = field(default=None, compare=False)
 
     def __str__(self) -> str:
         return self.reason
@@ -127,8 +130,7 @@ class MotionProof:
             return self._prove_chords(positions, extra @ self._scale.T)
         finally:
             # The checks of single states look for contacts only.
-            for out, _ in self._margins:
-                out[:] = 0.0
+            self._posed.set_margins(0.0)
 
     def is_free_edge(self, a: Array, b: Array) -> bool:
         """Return whether the straight motion from one state to another is proved to be free.
@@ -190,10 +192,9 @@ class MotionProof:
     def _relaxed_floors(self) -> dict[tuple[int, int], float]:
         """Return the floors of what is closer than the usual one at an end of the path."""
         floors: dict[tuple[int, int], float] = {}
-        # The chord that is being proved goes on with its margins.
-        before = [out.copy() for out, _ in self._margins]
-        for out, _ in self._margins:
-            out[:] = FLOOR_M + ERROR_M
+        # The chord that is being proved goes on with its margins, in the same state.
+        before, here = [out.copy() for out, _ in self._margins], self._data.qpos.copy()
+        self._posed.set_margins(FLOOR_M + ERROR_M)
         for q in self._ends:
             self._posed.place(q)
             mujoco.mj_collision(self._model, self._data)
@@ -204,6 +205,9 @@ class MotionProof:
                 floors[pair] = min(floor, floors.get(pair, FLOOR_M))
         for (out, _), margin in zip(self._margins, before, strict=True):
             out[:] = margin
+        self._data.qpos[:] = here
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_collision(self._model, self._data)
         return floors
 
     def _bodies_of(self, geoms: list[int]) -> tuple[int, int]:
@@ -283,13 +287,18 @@ class MotionProof:
         It returns those that `reach` proves for less than a part of the chord, the most urgent
         first.
         """
-        # Contacts are few: one by one is faster than as arrays.
         rate_of, lost_of, floor_of = rates.tolist(), lost.tolist(), floors.tolist()
+        data, part_of, count = self._data, self._part_of, self._count
 
         def nearest(horizon: float) -> tuple[list[Near], bool]:
             near: list[Near] = []
             is_close = False
-            for pair, first, second, distance in self._distances():
+            found = data.contact
+            # Contacts are few: one by one is faster than as arrays.
+            for (first, second), distance in zip(
+                found.geom.tolist(), found.dist.tolist(), strict=True
+            ):
+                pair = part_of[first] * count + part_of[second]
                 slack = distance - lost_of[pair]
                 is_close = is_close or slack < floor_of[pair]
                 part = slack / rate_of[pair]
@@ -300,26 +309,14 @@ class MotionProof:
 
         return nearest
 
-    def _distances(self) -> Iterable[tuple[int, int, int, float]]:
-        """Return the pair of parts, the geoms and the distance of each contact that was found."""
-        if not self._data.ncon:
-            return ()
-        found, part, count = self._data.contact, self._part_of, self._count
-        return [
-            (part[first] * count + part[second], first, second, distance)
-            for (first, second), distance in zip(
-                found.geom.tolist(), found.dist.tolist(), strict=True
-            )
-        ]
-
     def _obstruction(
         self, segment: int, at: float, lost: Array, floors: Array
     ) -> Obstruction | None:
         """Return the deepest of the contacts that are too close, after the exceptions."""
-        contacts = list(self._posed.found())
-        parts = [pair for pair, *_ in self._distances()]
-        slack, floors = self._data.contact.dist - lost[parts], floors[parts]
-        pairs = [self._bodies_of(geoms) for geoms in self._data.contact.geom.tolist()]
+        contacts, found = list(self._posed.found()), self._data.contact
+        parts = self._reach.part[found.geom] @ (self._count, 1)
+        slack, floors = found.dist - lost[parts], floors[parts]
+        pairs = [self._bodies_of(geoms) for geoms in found.geom.tolist()]
         if self._relaxed is None and float(slack.min()) > LEAST_FLOOR_M:
             self._relaxed = self._relaxed_floors()
         relaxed = self._relaxed or {}
@@ -337,4 +334,18 @@ class MotionProof:
             # A curve may come nearer than its chord, by what is lost.
             needed_m = FLOOR_M + lost[parts[closest]] - ERROR_M
             reason += f", closer than the {needed_m * 1e3:.2g} mm that the proof of a motion needs"
-        return Obstruction(segment, at, contact, reason)
+        return Obstruction(segment, at, contact, reason, self._away(closest))
+
+    def _away(self, number: int) -> Array | None:
+        """Return the direction of the joints in which the bodies of a contact part soonest."""
+        model, found = self._model, self._data.contact
+        normal, point = found.frame[number, :3], found.pos[number]
+        jacobian, away = np.zeros((3, model.nv)), np.zeros(model.nv)
+        mujoco.mj_comPos(model, self._data)
+        for geom, sign in zip(found.geom[number].tolist(), (-1.0, 1.0), strict=True):
+            body = int(model.geom_bodyid[geom])
+            mujoco.mj_jac(model, self._data, jacobian, None, point, body)
+            away += sign * (normal @ jacobian)
+        change = away @ self._posed.coordinates.matrix
+        length = float(np.linalg.norm(change))
+        return change / length if length > NOT_MOVING else None

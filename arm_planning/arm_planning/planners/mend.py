@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.planners.problem import Deadline, StateChecker
+from arm_planning.planners.problem import Deadline, StateChecker, length
 from arm_planning.planners.space import Space
 
 Array = NDArray[np.float64]
@@ -13,9 +13,13 @@ Array = NDArray[np.float64]
 MOST_BENDS = 12
 """Places where a path is bent at most."""
 BENDS = 24
-"""New way points that are tried at one place."""
+"""Bends that are tried at one place."""
 NEAREST, FARTHEST = 0.02, 0.4
-"""How far they are from the path: the first and the last, in the joints' units."""
+"""How far they lead from the path: the first and the last, in the joints' units."""
+CLOSE = 0.2
+"""Way points that are as close as this to the place are moved with it."""
+SPREAD = 2.0
+"""How much chance has a part in the last one's direction; the first leads straight away."""
 DOING = "proving that the path is free"
 
 
@@ -37,38 +41,53 @@ def mend(
         obstruction = checker.prove(rest)
         if obstruction is None:
             return np.concatenate([proved[:-1], rest])
-        at = obstruction.segment
-        chord = rest[at : at + 2]
-        place = chord[0] + np.clip(obstruction.fraction, 0.1, 0.9) * (chord[1] - chord[0])
-        bent = _bend(chord, place, space, checker, random, deadline)
+        first, last = obstruction.segment, obstruction.segment + 1
+        place = rest[first] + obstruction.fraction * (rest[last] - rest[first])
+        points = np.insert(rest, last, place, axis=0)
+        last += 1
+        # Way points next to it are as close to what is in the way.
+        while first > 0 and length(points[first] - place) < CLOSE:
+            first -= 1
+        while last < len(rest) and length(points[last] - place) < CLOSE:
+            last += 1
+        bent = _bent(points[first : last + 1], obstruction.away, space, checker, random, deadline)
         if bent is None:
             return None
-        proved = np.concatenate([proved[:-1], rest[: at + 1], bent, rest[at + 1 : at + 2]])
-        rest = rest[at + 1 :]
+        proved, rest = np.concatenate([proved[:-1], rest[:first], bent]), points[last:]
         if len(rest) == 1:
             return proved
     return None
 
 
-def _bend(
-    chord: Array,
-    place: Array,
+def _bent(
+    points: Array,
+    away: Array | None,
     space: Space,
     checker: StateChecker,
     random: np.random.Generator,
     deadline: Deadline,
 ) -> Array | None:
-    """Return way points near a place, (k, n), past which the chord's ends are connected."""
-    a, b = chord
-    for distance in np.geomspace(NEAREST, FARTHEST, BENDS):
+    """Return a proved path, (k, n), with the same ends, whose other points are moved away."""
+    for chance, distance in zip(
+        np.linspace(0.0, SPREAD, BENDS), np.geomspace(NEAREST, FARTHEST, BENDS), strict=True
+    ):
         deadline.check(DOING)
-        direction = random.standard_normal(len(a))
-        beside = place + direction * (distance / np.linalg.norm(direction))
-        point = space.project(np.clip(beside, space.lower, space.upper))
-        there = None if point is None else space.connect(a, point)
-        back = None if point is None or there is None else space.connect(point, b)
-        if there is not None and back is not None:
-            way = np.vstack([a, there, back])
-            if checker.prove(way) is None:
-                return way[1:-1]
+        anywhere = random.standard_normal(points.shape[1])
+        direction = anywhere if away is None else away + chance * anywhere / length(anywhere)
+        way = _connected(points, direction * (distance / length(direction)), space)
+        if way is not None and checker.prove(way) is None:
+            return way
     return None
+
+
+def _connected(points: Array, move: Array, space: Space) -> Array | None:
+    """Return the path, (k, n), from the first point past the others, moved, to the last."""
+    way = points[:1]
+    for point in points[1:-1] + move:
+        near = space.project(np.clip(point, space.lower, space.upper))
+        states = None if near is None else space.connect(way[-1], near)
+        if states is None:
+            return None
+        way = np.concatenate([way, states])
+    states = space.connect(way[-1], points[-1])
+    return None if states is None else np.concatenate([way, states])

@@ -29,6 +29,11 @@ class PathObstruction(Protocol):
         """Where on the segment, 0 to 1."""
         ...
 
+    @property
+    def away(self) -> Array | None:
+        """Direction from there, (n,), in which it is free soonest; None if nobody knows."""
+        ...
+
 
 class StateChecker(Protocol):
     """Says what is free of collisions; for one thread at a time."""
@@ -37,8 +42,11 @@ class StateChecker(Protocol):
         """Return whether the robot is free at positions of the group, (n,)."""
         ...
 
-    def free_count(self, states: Array) -> int:
-        """Return how many states, (k, n), are free before the first that is not."""
+    def free_count(self, states: Array, clearance_m: float = 0.0) -> int:
+        """Return how many states, (k, n), are free before the first that is not.
+
+        With a clearance, what is nearer than that is not free.
+        """
         ...
 
     def is_free_edge(self, a: Array, b: Array) -> bool:

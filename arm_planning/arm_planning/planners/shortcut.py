@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 TRIALS = 60
 """Random shortcuts that are tried at most."""
-PATIENCE = 8
+PATIENCE = 6
 """Ends them after so many in a row without a gain."""
 GAIN = 0.01
 """Share of the path's length that a random shortcut must save to be tried."""
@@ -35,6 +35,7 @@ def shorten(path: Array, space: Space, seed: Sequence[int], deadline: Deadline) 
     Raises:
         PlanningError: TIMED_OUT: a path that is shortened only in part would depend on the load.
     """
+    space = space.with_clearance(path[[0, -1]])
     path = _without_detours(path, space, deadline)
     random = np.random.default_rng(seed)
     idle = 0

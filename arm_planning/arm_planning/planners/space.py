@@ -12,10 +12,13 @@ from arm_planning.planners.problem import PlanningProblem, StateChecker, length
 
 Array = NDArray[np.float64]
 
-SAMPLE_STEP = 0.05
+SAMPLE_STEP = 0.07
 """Largest change of a joint between two samples of a straight move, rad or m."""
 SEARCH_STEP = 0.1
 """The same for the moves of a search: few of them are part of the path, which is proved."""
+CLEARANCE_M = 0.002
+"""Distance that samples keep in a space with clearance: what lies between them is then seldom too
+close for a proof."""
 BACK_OFF = 1
 """How many samples before an obstacle a move stops: the next one may already touch it."""
 SHORTEST = 0.2
@@ -42,6 +45,10 @@ class Space(Protocol):
     """Lower bounds of states to sample, (n,)."""
     upper: Array
     """Their upper bounds, (n,)."""
+
+    def with_clearance(self, ends: Array) -> "Space":
+        """Return a space in which paths with these ends, (k, n), are more likely to be proved."""
+        ...
 
     def project(self, q: Array) -> Array | None:
         """Return a state near to one, (n,), that satisfies the constraints; None without any."""
@@ -84,11 +91,26 @@ class SampledSpace:
     """Free states; a straight move counts as free if samples of it are.
 
     A path of such moves is proved afterwards: most are free, and samples are much faster.
+
+    Args:
+        checker: what is free.
+        lower: lower bounds of states, (n,).
+        upper: their upper bounds.
+        clearance_m: distance that a move all of the way keeps from what is around.
     """
 
-    def __init__(self, checker: StateChecker, lower: Array, upper: Array) -> None:
+    def __init__(
+        self, checker: StateChecker, lower: Array, upper: Array, clearance_m: float = 0.0
+    ) -> None:
         self.lower, self.upper = lower, upper
+        self._checker, self._clearance_m = checker, clearance_m
         self._free_count = checker.free_count
+
+    def with_clearance(self, ends: Array) -> Space:
+        """Return a space whose moves keep some clearance, if the ends have it."""
+        if self._free_count(ends, CLEARANCE_M) < len(ends):
+            return self
+        return SampledSpace(self._checker, self.lower, self.upper, CLEARANCE_M)
 
     def project(self, q: Array) -> Array | None:
         """Return the state itself."""
@@ -112,7 +134,7 @@ class SampledSpace:
         change = b - a
         count = _samples(change, SAMPLE_STEP)
         states = a + _from_coarse_to_fine(count) * (change / count)
-        return b[None, :] if self._free_count(states) == count else None
+        return b[None, :] if self._free_count(states, self._clearance_m) == count else None
 
 
 @lru_cache(maxsize=1024)
@@ -124,14 +146,17 @@ def _one_after_the_other(count: int, first: int) -> Array:
 
 @lru_cache(maxsize=256)
 def _from_coarse_to_fine(count: int) -> Array:
-    """Return them with the last first, then the middle, those between, and so on."""
-    order, spans = [count], [(0, count)]
+    """Return them with the middle first, then those between, and so on; the last is last.
+
+    Moves mostly end in states that are known to be free.
+    """
+    order, spans = [], [(0, count)]
     for low, high in spans:
         middle = (low + high) // 2
         if middle > low:
             order.append(middle)
             spans += ((low, middle), (middle, high))
-    return np.array(order, np.float64)[:, None]
+    return np.array([*order, count], np.float64)[:, None]
 
 
 def _samples(change: Array, step: float) -> int:
@@ -145,6 +170,10 @@ class ProvedSpace:
     def __init__(self, checker: StateChecker, lower: Array, upper: Array) -> None:
         self.lower, self.upper = lower, upper
         self._checker = checker
+
+    def with_clearance(self, ends: Array) -> Space:
+        """Return the space itself: its paths are proved."""
+        return self
 
     def project(self, q: Array) -> Array | None:
         """Return the state itself."""
@@ -177,6 +206,10 @@ class ConstrainedSpace:
         self._checker = checker
         self._path = path
         self._tight = path.tightened(TIGHTER)
+
+    def with_clearance(self, ends: Array) -> Space:
+        """Return the space itself: its moves are proved."""
+        return self
 
     def project(self, q: Array) -> Array | None:
         """Return a state near to one that satisfies the constraints within the limits."""

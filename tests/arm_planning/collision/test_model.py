@@ -74,6 +74,14 @@ def test_many_states_are_counted_up_to_the_first_that_collides():
         slider().free_count(np.array([[0.0], [nan]]))
 
 
+def test_states_with_less_than_a_clearance_are_not_free():
+    model, states = slider(), np.array([[0.0], [-0.795], [-0.7999]])
+    assert model.free_count(states) == 3
+    assert model.free_count(states, 0.004) == 2
+    assert model.free_count(states, 0.006) == 1
+    assert model.is_free(states[2])
+
+
 def test_many_states_follow_mimic_joints():
     follower = "<mimic joint='lead' multiplier='-2' offset='0.1'/>"
     urdf = robot(

@@ -1,3 +1,4 @@
+from collections.abc import Iterable
 from itertools import pairwise
 
 import numpy as np
@@ -8,6 +9,7 @@ from robots import joint, link, robot
 
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision import specification
+from arm_planning.collision.approach import Approach, Near
 from arm_planning.collision.contact import BodyKind
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.motion_proof import MotionProof, Obstruction
@@ -213,6 +215,10 @@ def test_an_obstruction_names_segment_fraction_and_contact():
 
 
 def between_walls() -> MotionProof:
+    return MotionProof(box_and_walls())
+
+
+def box_and_walls() -> CollisionModel:
     """A box of 0.1 m that slides along x and y between long walls at y = -1 and y = 1."""
     urdf = robot(
         *(link(name) for name in ("base", "across")),
@@ -225,7 +231,7 @@ def between_walls() -> MotionProof:
         name: CollisionObject(name, RigidTransform((0.0, y, 0.0)), (shape,))
         for name, y in (("right", -1.0), ("left", 1.0))
     }
-    return MotionProof(CollisionModel(model_of(urdf), PlanningScene({}, walls)))
+    return CollisionModel(model_of(urdf), PlanningScene({}, walls))
 
 
 def along(clearance: float, side: float = 1.0) -> np.ndarray:
@@ -261,6 +267,48 @@ def test_an_end_that_is_free_but_very_close_can_be_left_and_reached():
     obstruction = between_walls().prove(np.concatenate([leaving, along(5e-5, -1.0)]))
     assert obstruction is not None
     assert str(obstruction).startswith("box with right")
+
+
+def test_speeds_are_those_of_the_state_after_its_floors_were_relaxed(monkeypatch):
+    model, path, seen = box_and_walls(), along(5e-5)[1:], []
+    clear = Approach.clear
+
+    def spy(approach: Approach, near: Iterable[Near], limit: float) -> float:
+        seen.append(model.posed.data.qpos.copy())
+        return clear(approach, near, limit)
+
+    monkeypatch.setattr(Approach, "clear", spy)
+    assert MotionProof(model).prove(path) is None
+    assert seen
+    assert not any(np.array_equal(q, path[-1]) for q in seen)
+
+
+@pytest.mark.parametrize("seed", [0, 3])
+def test_an_obstruction_says_where_its_bodies_part(seed):
+    model, scene, rng = random_scene(seed)
+    group = model.group("every")
+    checker = CollisionModel(model, scene, group.name)
+    proof, looked = MotionProof(checker), 0
+    while looked < 20:
+        q = rng.uniform(group.lower, group.upper)
+        obstruction = proof.prove(q[None])
+        if obstruction is None or obstruction.away is None:
+            continue
+        contact = obstruction.contact
+        assert contact is not None
+        # Where bodies are deep in each other, there is more than one way out.
+        if not 1e-4 < contact.depth_m < 3e-3:
+            continue
+        looked += 1
+        farther, nearer = (
+            max(
+                each.depth_m
+                for each in checker.contacts(q + change * obstruction.away)
+                if (each.first, each.second) == (contact.first, contact.second)
+            )
+            for change in (1e-5, -1e-5)
+        )
+        assert farther < contact.depth_m < nearer
 
 
 def test_a_deviation_takes_away_from_the_clearance():

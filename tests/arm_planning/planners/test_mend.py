@@ -28,6 +28,16 @@ def test_a_path_is_bent_past_what_it_touches():
     assert all(map(NEEDLE.is_free, dense(path)))
 
 
+def test_a_way_point_that_touches_is_moved():
+    space = SampledSpace(NEEDLE, *LIMITS)
+    touching = np.array([np.arctan2(0.5878, 1.918), 0.0])
+    assert not NEEDLE.is_free(touching)
+    path = mend(np.array([START, touching, GOAL]), space, NEEDLE, (1,), NO_DEADLINE)
+    assert path is not None
+    assert NEEDLE.prove(path) is None
+    assert np.array_equal(path[[0, -1]], [START, GOAL])
+
+
 def test_a_path_that_is_free_stays_as_it_is():
     arm = PlanarArm()
     path = np.array([START, GOAL])
