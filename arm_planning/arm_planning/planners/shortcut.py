@@ -50,15 +50,21 @@ def shorten(path: Array, space: Space, seed: Sequence[int], deadline: Deadline) 
 
 
 def _with_cut_corners(path: Array, space: Space, deadline: Deadline) -> Array:
+    # What was not cut in one round, with the same points, is not in the next.
+    stuck: set[bytes] = set()
     for _ in range(ROUNDS):
         before, corner = path_length(path), 1
         while corner < len(path) - 1:
             deadline.check(DOING)
-            cut = _cut(path[corner - 1 : corner + 2], space)
-            # One way point less, or a new corner, whose turn is in the next round.
-            if cut is not None:
+            points = path[corner - 1 : corner + 2]
+            cut = None if points.tobytes() in stuck else _cut(points, space)
+            if cut is None:
+                stuck.add(points.tobytes())
+                corner += 1
+            else:
+                # One way point less, or a new corner, whose turn is in the next round.
                 path = np.concatenate([path[:corner], cut, path[corner + 1 :]])
-            corner += 1 if cut is None else max(len(cut), 1)
+                corner += max(len(cut), 1)
         if before - path_length(path) < LEAST_CUT:
             break
     return path
