@@ -247,6 +247,21 @@ def test_time_stops_and_advances_by_steps(simulator, client):
     simulator.delete("crate")
 
 
+def test_forty_requests_at_once_are_all_answered(simulator, client):
+    from rclpy.qos import QoSProfile
+    from simulation_interfaces.srv import GetEntities
+
+    # With the usual ten, the client itself loses answers.
+    deep = QoSProfile(depth=100)
+    service = client.node.create_client(GetEntities, "/get_entities", qos_profile=deep)
+    client.wait_until(service.service_is_ready, "/get_entities")
+    client.be_known_to_server("/get_entities")
+    request = GetEntities.Request()
+    answers = client.run(lambda: [service.call_async(request) for _ in range(40)], "requests")
+    client.wait_until(lambda: all(answer.done() for answer in answers), "forty answers")
+    assert {answer.result().result.result for answer in answers} == {OK}
+
+
 def test_a_long_run_of_steps_can_be_cancelled(simulator, client):
     from simulation_interfaces.msg import SimulationState
 

@@ -21,6 +21,7 @@ from arm_control.loop.clock import Throttle
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.outbox import Outbox
 from arm_control.loop.ros_executor_bridge import run_on_executor
+from arm_node.service_queue import SERVICE_QOS
 from arm_node.workarounds.message_template import MessageTemplate, raw_sender
 
 SHORTEST_S, LONGEST_S = -(2.0**31), 2.0**31 - 1.0
@@ -193,7 +194,9 @@ class ControllerAdapter(ABC, Generic[ControllerT]):
 
     def serve(self, service_type: type[Any], name: str, answer: Callable[[Any, Any], Any]) -> None:
         """Create a service that `on_cleanup` destroys."""
-        self._end_points.append(self.node.create_service(service_type, name, answer))
+        self._end_points.append(
+            self.node.create_service(service_type, name, answer, qos_profile=SERVICE_QOS)
+        )
 
     def on_cleanup(self) -> None:
         """Take the sink from the core, and destroy the end points; may be called more than once.

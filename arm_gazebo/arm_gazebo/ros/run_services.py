@@ -32,6 +32,7 @@ from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.loading import NamedWorld, WorldLoader, available_worlds
 from arm_gazebo.world.run_control import RunControl, RunState
 from arm_gazebo.world.spawn_model import FORMATS
+from arm_node.service_queue import SERVICE_QOS
 
 STATE_CODES = {
     Refusal.ALREADY_THERE: SetSimulationState.Response.ALREADY_IN_TARGET_STATE,
@@ -87,7 +88,12 @@ class RunServices:
         )
         create_services(node, services)
         # Apart from the others, because its response has no result.
-        node.create_service(GetSimulatorFeatures, "get_simulator_features", self._features)
+        node.create_service(
+            GetSimulatorFeatures,
+            "get_simulator_features",
+            self._features,
+            qos_profile=SERVICE_QOS,
+        )
 
     def _features(self, _request: Any, response: GetSimulatorFeatures.Response) -> Any:
         response.features = SimulatorFeatures(

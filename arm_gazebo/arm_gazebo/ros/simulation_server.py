@@ -27,6 +27,7 @@ from arm_gazebo.state.snapshots import SnapshotStore
 from arm_gazebo.world.editor import LoopCall
 from arm_gazebo.world.run_control import RunControl
 from arm_node.executor_thread import ExecutorThread
+from arm_node.service_queue import SERVICE_QOS
 
 REPORT_PERIOD_S = 1.0
 DEPTH = 10
@@ -58,7 +59,7 @@ class StatisticsPublisher:
         node.create_timer(
             REPORT_PERIOD_S, self._publish, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
-        node.create_service(SelfTest, "~/get_statistics", self._answer)
+        node.create_service(SelfTest, "~/get_statistics", self._answer, qos_profile=SERVICE_QOS)
 
     def _publish(self) -> None:
         is_wanted = self._publisher.get_subscription_count() > 0

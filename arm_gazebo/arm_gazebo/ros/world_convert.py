@@ -30,6 +30,7 @@ from arm_gazebo.world.changes import Matrix, quaternion_of
 from arm_gazebo.world.entity import WORLD_FRAME, Category, EntityNote
 from arm_gazebo.world.entity_motion import Box, EntityFilter, EntityMotion, Volume
 from arm_gazebo.world.loading import NamedWorld
+from arm_node.service_queue import SERVICE_QOS
 
 Codes = Mapping[Refusal, int]
 ServiceRow = tuple[Any, str, Callable[[Any, Any], Any], Codes]
@@ -55,7 +56,7 @@ def create_services(node: Node, rows: Iterable[ServiceRow]) -> None:
         is_coroutine = iscoroutinefunction(handler)
         callback = partial(_answer_later if is_coroutine else _answer, handler, codes)
         group = MutuallyExclusiveCallbackGroup() if is_coroutine else None
-        node.create_service(type_, name, callback, callback_group=group)
+        node.create_service(type_, name, callback, qos_profile=SERVICE_QOS, callback_group=group)
 
 
 def _answer(handler: Callable[[Any, Any], Any], codes: Codes, request: Any, response: Any) -> Any:

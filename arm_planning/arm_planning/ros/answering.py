@@ -7,16 +7,13 @@ from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
 
+from arm_node.service_queue import SERVICE_QOS
 from arm_planning.errors import MoveItErrorCode
 from arm_planning.ros.convert import error_code
 
 HOLDERS = ("motion_plan_response", "response")
 """Fields of answers and results that have the error code, where they have none themselves."""
-REQUESTS = QoSProfile(depth=200)
-"""How many requests of a service may wait. Of ROS's ten, one is dropped for an eleventh, and its
-client waits for ever."""
 LOGGER = logging.getLogger("move_group")
 
 Serve = Callable[[Any, Any], Any]
@@ -73,7 +70,7 @@ def offer_service(
             fill_error(failed, MoveItErrorCode.FAILURE, report_fault(name, error))
             return failed
 
-    node.create_service(kind, name, answer, qos_profile=REQUESTS, callback_group=group)
+    node.create_service(kind, name, answer, qos_profile=SERVICE_QOS, callback_group=group)
 
 
 def report_fault(name: str, error: Exception) -> str:

@@ -12,8 +12,9 @@ from rclpy.action.server import ActionServer, CancelResponse, GoalResponse, Serv
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
+from arm_node.service_queue import SERVICE_QOS
 from arm_planning.errors import MoveItErrorCode
-from arm_planning.ros.answering import REQUESTS, fill_error, report_fault
+from arm_planning.ros.answering import fill_error, report_fault
 from arm_planning.ros.trajectory_executor import STOPPED, ExecutionOutcome
 
 RESULT_TIMEOUT_S = 60
@@ -166,9 +167,9 @@ class GoalServer:
             goal_callback=lambda _: GoalResponse.ACCEPT,
             cancel_callback=self._cancel,
             handle_accepted_callback=self._begin,
-            goal_service_qos_profile=REQUESTS,
-            result_service_qos_profile=REQUESTS,
-            cancel_service_qos_profile=REQUESTS,
+            goal_service_qos_profile=SERVICE_QOS,
+            result_service_qos_profile=SERVICE_QOS,
+            cancel_service_qos_profile=SERVICE_QOS,
             result_timeout=RESULT_TIMEOUT_S,
         )
 

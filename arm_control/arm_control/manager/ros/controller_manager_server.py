@@ -22,7 +22,6 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.lifecycle import LifecycleState, Transition
@@ -52,14 +51,10 @@ from arm_description.urdf.description import Description, text_of
 from arm_node.executor_thread import ExecutorThread
 from arm_node.names import as_node_name
 from arm_node.ros_logging import LoggerLevelServices
+from arm_node.service_queue import SERVICE_QOS
 
 logger = logging.getLogger("controller_manager")
 
-SERVICE_QOS = QoSProfile(
-    history=HistoryPolicy.KEEP_ALL,
-    reliability=ReliabilityPolicy.RELIABLE,
-    durability=DurabilityPolicy.VOLATILE,
-)
 SERVICE_THREADS = 3
 """One for requests that wait for the control loop, one for requests that only read, and one for the
 emergency stop, which waits for neither."""

@@ -15,6 +15,7 @@ from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.ros_executor_bridge import call_on_loop
 from arm_control.manager.controller_manager import ControllerManager
+from arm_node.service_queue import SERVICE_QOS
 
 NAME = "emergency_stop"
 DEPTH = 10
@@ -45,7 +46,7 @@ class EmergencyStopServer:
         self._published: bool | None = None
         # rclpy accepts a coroutine, but its annotations do not.
         answer: Any = self._answer
-        node.create_service(SetBool, NAME, answer, callback_group=group)
+        node.create_service(SetBool, NAME, answer, qos_profile=SERVICE_QOS, callback_group=group)
         node.create_subscription(Bool, NAME, self._take, DEPTH, callback_group=group)
         loop.call(self._observe).result()
 
