@@ -74,3 +74,9 @@ for first, second in ((0.0, 0.0), (0.0, 0.7), (0.4, 0.0), (0.4, 0.7)):
 if right != [True, True, True] * 2 + [True, True, False] * 2:
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# drake 1.51.1 MuJoCo 4.0.0
+# 0.0 0.0 rad: Drake at [0.5 0.2 0.1], MuJoCo at [0.5 0.2 0.1]
+# 0.0 0.7 rad: Drake at [0.5 0.2 0.1], MuJoCo at [0.5 0.2 0.1]
+# 0.4 0.0 rad: Drake at [ 0.499  0.2   -0.103], MuJoCo at [0.5 0.2 0.1]
+# 0.4 0.7 rad: Drake at [ 0.499  0.2   -0.103], MuJoCo at [0.5 0.2 0.1]

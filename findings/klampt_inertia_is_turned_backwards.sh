@@ -71,3 +71,8 @@ if not all(np.isclose(one[0], one[3]) and np.isclose(one[1], one[2]) for one in 
 if [bool(np.isclose(one[2], one[3])) for one in found.values()] != [True, False, False]:
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# Klampt 0.10.1.post1 MuJoCo 4.0.0
+# rpy [0.   0.   1.57]: Klampt 0.02360, MuJoCo 0.02360, R I R^T 0.02360, R^T I R 0.02360 kg m2
+# rpy [0.  0.  0.6]: Klampt 0.02998, MuJoCo 0.02103, R I R^T 0.02103, R^T I R 0.02998 kg m2
+# rpy [0.3 0.4 0.5]: Klampt 0.02961, MuJoCo 0.02344, R I R^T 0.02344, R^T I R 0.02961 kg m2

@@ -70,3 +70,8 @@ expected = {"range_m100_100": (False, False), "range_0_100": (False, False), "de
 if signs != expected:
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# lerobot-0.6.1
+# range_m100_100: step 2247 is 20.00, with drive_mode 1 -20.00; the goal 60 is step 2647, with drive_mode 1 1447
+# range_0_100: step 2247 is 60.00, with drive_mode 1 40.00; the goal 60 is step 2247, with drive_mode 1 1847
+# degrees: step 2247 is 17.58, with drive_mode 1 17.58; the goal 60 is step 2729, with drive_mode 1 2729

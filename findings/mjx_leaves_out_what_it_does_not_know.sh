@@ -72,3 +72,12 @@ if right != [(name in ("a motor", "a spring", "damping of 3 v"), True) for name 
     print("the behaviour has changed")
     sys.exit(1)
 PYTHON
+# Output seen:
+# mujoco-mjx 3.17.0 mujoco 3.17.0
+# a motor: MJX 2.050, MuJoCo 2.050, by hand 2.050 m/s
+# delay of 0.1 s: MJX 2.050, MuJoCo 2.000, by hand 2.000 m/s
+# a disabled group: MJX 2.050, MuJoCo 2.000, by hand 2.000 m/s
+# a spring: MJX 1.727, MuJoCo 1.727, by hand 1.725 m/s
+# damping of 3 v: MJX 1.722, MuJoCo 1.722, by hand 1.721 m/s
+# the same, springs off: MJX 2.000, MuJoCo 1.722, by hand 1.721 m/s
+# damping of 3 v |v|: MJX 2.000, MuJoCo 1.540, by hand 1.538 m/s

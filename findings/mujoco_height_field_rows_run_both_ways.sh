@@ -90,3 +90,10 @@ for way, (low, high) in zip(ways, found, strict=True):
 if not np.allclose(found, ([0, 0.9], [0.9, 0], [0.9, 0], [0.9, 0], [0, 0.9]), atol=0.01):
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# mujoco 4.0.0 coal 3.0.3
+# from_text: height 0 m at y = -0.9, 0.9 m at y = 0.9
+# from_binary: height 0.9 m at y = -0.9, 0 m at y = 0.9
+# from_model: height 0.9 m at y = -0.9, 0 m at y = 0.9
+# from_spec: height 0.9 m at y = -0.9, 0 m at y = 0.9
+# from_coal: height 0 m at y = -0.9, 0.9 m at y = 0.9

@@ -73,3 +73,9 @@ if not np.allclose(integrated((0.2, 0.2, 0.2)), 2 / 3 * 0.04, rtol=1e-4):
 if not np.allclose(list(ratios.values()), (1, 0.867, 0.838), atol=2e-3):
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# mujoco 4.0.0
+# ball (0.2, 0.2, 0.2): MuJoCo [0.02667 0.02667 0.02667], true [0.02667 0.02667 0.02667] kg m2
+# disc (0.2, 0.2, 0.01): MuJoCo [0.00878 0.00878 0.01745], true [0.01013 0.01013 0.02016] kg m2
+# needle (0.01, 0.01, 0.2): MuJoCo [8.43e-03 8.43e-03 8.00e-05], true [1.006e-02 1.006e-02 7.000e-05] kg m2
+# of the true value about x: {'ball': 1.0, 'disc': 0.867, 'needle': 0.838}

@@ -67,3 +67,8 @@ if any(
 ):
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# pin 4.1.0 MuJoCo 4.0.0
+# on the wall: Pinocchio [-5.886] N m, MuJoCo [-0.] N m
+# in a body: Pinocchio [-0.] N m, MuJoCo [-0.] N m
+# two arms: Pinocchio [-5.886] N m, MuJoCo [-5.886 -5.886] N m

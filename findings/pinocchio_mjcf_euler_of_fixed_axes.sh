@@ -73,3 +73,9 @@ for order in ("xyz", "zyx", "XYZ", "ZYX"):
 if right != [True, True, False] * 2 + [True, True, True] * 2:
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# pin 4.1.0 MuJoCo 4.0.0
+# xyz: Pinocchio [ 0.199 -0.098  0.975], MuJoCo [ 0.199 -0.098  0.975], 0 mm apart
+# zyx: Pinocchio [ 0.218 -0.275  0.936], MuJoCo [ 0.218 -0.275  0.936], 0 mm apart
+# XYZ: Pinocchio [ 0.199 -0.098  0.975], MuJoCo [ 0.218 -0.037  0.975], 64 mm apart
+# ZYX: Pinocchio [ 0.218 -0.275  0.936], MuJoCo [ 0.199 -0.29   0.936], 24 mm apart

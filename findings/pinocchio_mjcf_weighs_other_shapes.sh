@@ -49,3 +49,8 @@ for name, (pinned, simulated) in found.items():
 if list(found.values()) != [(4, 4), (1, 4), (4, 1)]:
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# pin 4.1.0 MuJoCo 4.0.0
+# all shapes: Pinocchio 4 kg, MuJoCo 4 kg
+# a cover without contacts: Pinocchio 1 kg, MuJoCo 4 kg
+# a group that is left out: Pinocchio 4 kg, MuJoCo 1 kg

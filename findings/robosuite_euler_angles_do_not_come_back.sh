@@ -39,3 +39,8 @@ if right != [True, True, True] * 2 + [True, True, False]:
     print("the behaviour has changed")
     sys.exit(1)
 PYTHON
+# Output seen:
+# robosuite 1.5.2
+# (0.4, 0.0, 0.0) rad comes back as [ 0.4 -0.   0. ] rad, 0.000 rad apart
+# (0.0, 0.4, 0.0) rad comes back as [0.  0.4 0. ] rad, 0.000 rad apart
+# (0.1, 0.5, 0.9) rad comes back as [0.463 0.22  0.978] rad, 0.442 rad apart

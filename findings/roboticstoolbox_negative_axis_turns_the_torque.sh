@@ -62,3 +62,8 @@ for kind, axis in (("revolute", "0 1 0"), ("revolute", "0 -1 0"), ("prismatic", 
 if not np.allclose(found, (1, -1, -1), atol=1e-6):
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# roboticstoolbox-python 1.5.0
+# revolute 0 1 0: gravload [-18.362  -4.305], from the energy [-18.362  -4.305]
+# revolute 0 -1 0: gravload [-18.938  -4.88 ], from the energy [-18.938   4.88 ]
+# prismatic 0 0 -1: gravload [-18.164   9.372], from the energy [-18.164  -9.372]

@@ -62,3 +62,7 @@ for name, joints in ARMS.items():
 if not np.allclose(found, (1, 0.81, 4 / 9, 0.16), atol=1e-3):
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# roboticstoolbox-python 1.5.0
+# one origin of 0.9 m: gravload -8.829 N m, from the energy -8.829; inertia 0.810 kg m2
+# 0.5 m by a fixed joint, 0.4 m: gravload -3.924 N m, from the energy -8.829; inertia 0.160 kg m2

@@ -67,3 +67,9 @@ if not np.allclose(seen, expected, atol=1e-4):
 if not all(limit > 1e38 for _, limit, _, _ in found.values()):
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# sapien 3.0.3
+# no <dynamics>: friction 0.05, force limit 3.4e+38; 0.0000, 0.0000 rad/s
+# friction="0": friction 0.05, force limit 3.4e+38; 0.0000, 0.0000 rad/s
+# friction="0.4": friction 0.05, force limit 3.4e+38; 0.0000, 0.0000 rad/s
+# 0 by hand: friction 0.00, force limit 3.4e+38; 0.9876, 0.9512 rad/s

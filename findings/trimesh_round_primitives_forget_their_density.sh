@@ -42,3 +42,9 @@ for name, (body, true) in BODIES.items():
 if not np.allclose(ratios, [(1 / DENSITY, 1)] * 2 + [(1, 1)] * 2, rtol=0.02, atol=1e-6):
     sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# trimesh 5.2.0
+# primitives.Cylinder: 42.14 kg, Izz 0.000079, in mass_properties 0.209348, true 0.212058 kg m2
+# primitives.Sphere: 11.21 kg, Izz 0.000017, in mass_properties 0.044592, true 0.045239 kg m2
+# primitives.Box: 16.20 kg, Izz 0.067500, in mass_properties 0.067500, true 0.067500 kg m2
+# creation.cylinder: 42.41 kg, Izz 0.212015, in mass_properties 0.212015, true 0.212058 kg m2

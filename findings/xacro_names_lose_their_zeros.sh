@@ -52,3 +52,11 @@ for value, links in found.items():
     if links != expected + ["equal"] * (value == turned):
         sys.exit("the behaviour has changed")
 PYTHON
+# Output seen:
+# xacro 2.1.1
+# 01: argument_01 property_1 macro_1
+# 1.10: argument_1.10 property_1.1 macro_1.1
+# 1e3: argument_1e3 property_1000.0 macro_1000.0
+# true: argument_true property_True macro_True
+# 0x10: argument_0x10 property_0x10 macro_0x10 equal
+# a: argument_a property_a macro_a equal
