@@ -9,6 +9,7 @@ from arm_cli.arguments import JSON, Argument, Exclusive, Flag, positive_number, 
 from arm_cli.errors import CommandUsageError, NoSuchNameError
 from arm_cli.output import complain, say
 from arm_cli.ros.connection import connect
+from arm_node.environment import PLANNING_PACKAGES
 
 if TYPE_CHECKING:
     from arm_cli.ros.move_group import MoveGroupClient
@@ -63,7 +64,7 @@ def move(options: argparse.Namespace) -> None:
         raise CommandUsageError(
             f"--pose takes X Y Z or X Y Z ROLL PITCH YAW, not {len(options.pose)} numbers"
         )
-    with connect() as session:
+    with connect(packages=PLANNING_PACKAGES) as session:
         from arm_cli.ros.move_group import MoveGroupClient
 
         client = MoveGroupClient(session)

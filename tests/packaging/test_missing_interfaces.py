@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from arm_node.environment import INTERFACE_PACKAGES
+from arm_node.environment import INTERFACE_PACKAGES, PLANNING_PACKAGES
 
 PROJECT = Path(__file__).parents[2] / "pyproject.toml"
 
 # Python imports a module of this name at its start: here it hides the packages from the process
 # and from all that it starts.
-SITE_CUSTOMIZE = f"""
+SITE_CUSTOMIZE = """
 import sys
 from importlib.machinery import PathFinder
 
@@ -23,7 +23,7 @@ from importlib.machinery import PathFinder
 class WithoutInterfaces(PathFinder):
     @classmethod
     def find_spec(cls, fullname, path=None, target=None):
-        if fullname.partition(".")[0] in {INTERFACE_PACKAGES!r}:
+        if fullname.partition(".")[0] in HIDDEN:
             return None
         return super().find_spec(fullname, path, target)
 
@@ -49,10 +49,12 @@ PLAIN = "arm_controller."
 
 @pytest.fixture
 def run_without_interfaces(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Run a console script where the interface packages are hidden."""
-    (tmp_path / "sitecustomize.py").write_text(SITE_CUSTOMIZE)
+    """Run a console script where interface packages are hidden, by default the suite's own."""
 
-    def run(name: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    def run(
+        name: str, *arguments: str, hidden: tuple[str, ...] = INTERFACE_PACKAGES
+    ) -> subprocess.CompletedProcess[str]:
+        (tmp_path / "sitecustomize.py").write_text(f"{SITE_CUSTOMIZE}HIDDEN = {hidden!r}\n")
         module, _, function = SCRIPTS[name].partition(":")
         start = (
             f"import sys; from {module} import {function}; "
@@ -92,3 +94,12 @@ def test_the_supervisor_passes_the_sentence_on_and_exits_2(run_without_interface
     assert done.returncode == 2, done.stderr
     assert sum(is_the_sentence(line) for line in done.stdout.splitlines()) == 1
     assert "Traceback" not in done.stdout
+
+
+@pytest.mark.parametrize("words", [["move", "--state", "home"], ["teleop"]])
+def test_a_verb_of_planning_names_what_only_planning_needs(run_without_interfaces, words):
+    done = run_without_interfaces("arm", *words, hidden=PLANNING_PACKAGES)
+    assert done.returncode == 2, done.stderr
+    (sentence,) = done.stderr.splitlines()
+    assert f"{', '.join(PLANNING_PACKAGES)} are not installed" in sentence
+    assert "pip install ./arm_moveit_interfaces" in sentence

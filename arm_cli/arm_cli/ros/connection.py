@@ -1,7 +1,7 @@
 """Connects a verb to ROS."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def connect(name: str | None = None, use_sim_time: bool = False) -> Iterator["CommandSession"]:
-    """Yield a session with a node for this command; see `open_session`.
+def connect(
+    name: str | None = None, use_sim_time: bool = False, packages: Sequence[str] = ()
+) -> Iterator["CommandSession"]:
+    """Yield a session with a node for this command; see `open_session` and `prepare_environment`.
 
     Unless the user has a DDS profile, the process announces itself as often as launched processes
     do, so that it discovers others at once. Shared memory of killed processes is removed. stdout is
@@ -29,7 +31,7 @@ def connect(name: str | None = None, use_sim_time: bool = False) -> Iterator["Co
         CommandUsageError: ROS cannot start in this environment; the message says how to fix it.
     """
     try:
-        prepare_environment()
+        prepare_environment(packages=packages)
     except UnusableEnvironmentError as error:
         raise CommandUsageError(str(error)) from error
     remove_abandoned()

@@ -17,6 +17,7 @@ from arm_cli.output import complain, say, say_in_place
 from arm_cli.ros.connection import connect
 from arm_cli.stop import EmergencyStop
 from arm_cli.teleop.motions import HELP, Keyboard, Motion, keys_of
+from arm_node.environment import PLANNING_PACKAGES
 
 if TYPE_CHECKING:
     from arm_cli.ros.session import CommandSession
@@ -32,7 +33,7 @@ READ_BYTES = 1024
 @verb(epilog="The keys are printed when it starts. A gamepad needs joy_node, which publishes /joy.")
 def teleop(_options: argparse.Namespace) -> None:
     """Jog the robot with the keys of this terminal, and with what publishes /joy."""
-    with connect() as session:
+    with connect(packages=PLANNING_PACKAGES) as session:
         from arm_cli.teleop.ros_jog import JogClient
 
         client = JogClient(session)
