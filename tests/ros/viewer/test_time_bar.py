@@ -112,6 +112,14 @@ def test_the_emergency_stop_is_whole_however_long_the_words_beside_it(bar):
     assert right <= width
 
 
+def test_the_clock_is_whole_on_a_phone(bar):
+    bar.page.set_viewport_size(PHONE)
+    clock, words = bar.page.evaluate("""() => [document.getElementById("arm-clock"),
+      document.querySelector(".arm-time")].map(e => e.getBoundingClientRect().right)""")
+    bar.page.set_viewport_size(DESK)
+    assert clock <= words <= PHONE["width"]
+
+
 def test_time_is_paused_stepped_and_goes_on(bar, state):
     bar.shows("factor", "^\u00d7[0-9]")
     before_s = bar.pause()
