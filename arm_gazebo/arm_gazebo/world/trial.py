@@ -1,17 +1,20 @@
 """Check an untrusted MJCF, and try it in a process with limited memory and time.
 
 With an untrusted model MuJoCo may use all memory, never return, or crash the process. None of this
-may happen in the process of the control loop.
+may happen in the process of the control loop. The other one, `python -m arm_gazebo.world.trial`,
+loads MuJoCo once and forks for each request, so that it survives a crash of the fork.
 """
 
 import json
 import os
+import resource
 import subprocess
 import sys
 import tempfile
 import weakref
 from contextlib import suppress
 from pathlib import Path
+from typing import Any, cast
 
 import mujoco
 import numpy as np
@@ -21,7 +24,7 @@ from arm_gazebo.feed.child_process import describe_exit
 from arm_gazebo.mjcf.memory_limit import MemoryLimit
 from arm_gazebo.mjcf.references import check_readable, references
 
-MODULE = "arm_gazebo.world.trial_process"
+MODULE = "arm_gazebo.world.trial"
 END_TIMEOUT_S = 5.0
 HEADROOM = 2.0
 """Compiling needs more memory than the compiled model."""
@@ -160,3 +163,66 @@ def can_be_simulated(model: mujoco.MjModel) -> bool:
     # MuJoCo resets itself when a number is no longer finite.
     was_reset = data.time < (STEPS - 0.5) * model.opt.timestep
     return not was_reset and all(np.isfinite(values).all() for values in numbers)
+
+
+NICENESS = 5
+"""The control loop has precedence on the processor."""
+MAX_PROBLEM_LENGTH = 2000
+
+
+def _answer_requests() -> None:
+    """Answer each line of stdin, a request in JSON, with a line on stdout, until stdin ends."""
+    os.nice(NICENESS)
+    for line in sys.stdin.buffer:
+        sys.stdout.write(json.dumps(_answer(json.loads(line))) + "\n")
+        sys.stdout.flush()
+
+
+def _answer(request: dict[str, Any]) -> dict[str, object]:
+    reading, writing = os.pipe()
+    child = os.fork()
+    if not child:
+        # The fork must never return to this process's loop.
+        try:
+            os.close(reading)
+            os.write(writing, json.dumps(_trial(request)).encode())
+        finally:
+            os._exit(0)
+    os.close(writing)
+    with open(reading, "rb") as stream:
+        answer = stream.read()
+    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    return cast("dict[str, object]", json.loads(answer)) if answer else {"exit": code}
+
+
+def _trial(request: dict[str, Any]) -> dict[str, object]:
+    limit = _data_bytes() + int(request["limit_mb"] * 1e6)
+    processor_s = int(request["processor_s"])
+    resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+    resource.setrlimit(resource.RLIMIT_CPU, (processor_s, processor_s + 1))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    try:
+        return {"problem": _numeric_problem(request["text"], request["path"])}
+    except (mujoco.FatalError, ValueError) as error:
+        problem = " ".join(str(error).split()) or type(error).__name__
+        return {"problem": problem[:MAX_PROBLEM_LENGTH], "out_of_memory": "allocate" in problem}
+    # MuJoCo's bindings turn std::bad_alloc into an anonymous RuntimeError.
+    except (MemoryError, RuntimeError):
+        return {"out_of_memory": True}
+
+
+def _numeric_problem(text: str, path: str | None) -> str:
+    """Return why a model that MuJoCo compiles cannot be simulated."""
+    spec = mujoco.MjSpec.from_string(text) if path is None else mujoco.MjSpec.from_file(path)
+    return "" if can_be_simulated(spec.compile()) else "its numbers cannot be simulated"
+
+
+def _data_bytes() -> int:
+    for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines():
+        if line.startswith("VmData:"):
+            return int(line.split()[1]) * 1024
+    return 0
+
+
+if __name__ == "__main__":
+    _answer_requests()
