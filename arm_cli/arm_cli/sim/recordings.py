@@ -16,7 +16,7 @@ from arm_cli.ros.connection import connect
 from arm_cli.sim.simulation import NAMESPACE, ask_simulation
 
 if TYPE_CHECKING:
-    from arm_cli.ros.run_bag import RunBag
+    from arm_cli.ros.replayed_run import RunBag
     from arm_gazebo.recording.replay import Difference, Replay, ReplayResult
     from arm_gazebo.recording.run_file import RecordedInput
 
@@ -201,7 +201,7 @@ class _Progress:
 
 def _published(run: "Replay", options: argparse.Namespace) -> "ReplayResult":
     """Run, publish and compare; then publish the last state until Ctrl-C."""
-    from arm_cli.ros.run_player import RunPlayer
+    from arm_cli.ros.replayed_run import RunPlayer
 
     with connect() as session:
         player = RunPlayer(session, run, options.speed)
@@ -213,7 +213,7 @@ def _published(run: "Replay", options: argparse.Namespace) -> "ReplayResult":
 
 def _written(run: "Replay", options: argparse.Namespace) -> "ReplayResult":
     """Run and compare, and write what was equal as a bag."""
-    from arm_cli.ros.run_bag import RunBag
+    from arm_cli.ros.replayed_run import RunBag
 
     with closing(RunBag(options.bag, run)) as bag:
         return _replayed(run, options, bag.show, bag)
