@@ -5,16 +5,17 @@ when a test needs it.
 """
 
 import os
+import re
+import shutil
 import warnings
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import pytest
 
 if TYPE_CHECKING:
-    from arm_sim.bench.evidence import Evidence
     from arm_sim.bench.processes import LoggedProcess
     from arm_sim.bench.ros_bench import RosBench
     from arm_sim.bench.simulation import BenchSimulation, SimulationPool
@@ -25,8 +26,19 @@ MARKERS = (
     "arm_ros(robot, world, controllers, launch, arguments): what the fixture arm_ros launches",
 )
 ARTIFACTS = "arm-artifacts"
+SECTION = "arm"
+MAX_NAME = 120
 
-_evidence = pytest.StashKey[list["Evidence"]]()
+
+class Evidence(Protocol):
+    """A fixture's value that can explain a failure."""
+
+    def report(self, folder: Path) -> Iterator[str]:
+        """Write files into a folder, and yield lines; may raise OSError or GazeboError."""
+        ...
+
+
+_evidence = pytest.StashKey[list[Evidence]]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -52,11 +64,37 @@ def pytest_runtest_makereport(item: pytest.Item) -> Iterator[None]:
     report: pytest.TestReport = yield  # pyright: ignore
     if report.failed and report.when == "call":
         for value in item.stash.get(_evidence, []):
-            from arm_sim.bench.evidence import explain
-
-            folder = item.config.rootpath / str(item.config.getoption("--arm-artifacts"))
-            explain(item, report, Path(folder), value)
+            _explain(item, report, value)
     return report  # pyright: ignore
+
+
+def _explain(item: pytest.Item, report: pytest.TestReport, value: Evidence) -> None:
+    """Add a fixture's evidence to the report of a failed test, and its files to the folder."""
+    from arm_gazebo.errors import GazeboError
+
+    folder = item.config.rootpath / str(item.config.getoption("--arm-artifacts"))
+    lines: list[str] = []
+    try:
+        mine = _folder_of(item, folder)
+        lines.extend(value.report(mine))
+    except (OSError, GazeboError) as error:
+        lines.append(f"the report cannot be written: {error}")
+    else:
+        # JUnit XML takes the properties from a later report, at the end of the test.
+        item.user_properties.append((SECTION, str(mine)))
+    report.sections.append((SECTION, "\n".join(lines)))
+
+
+def _folder_of(item: pytest.Item, folder: Path) -> Path:
+    """Return an empty folder for a test."""
+    folder.mkdir(parents=True, exist_ok=True)
+    # As in pytest's own cache: nobody should commit the files by mistake.
+    (folder / ".gitignore").write_text("*\n", encoding="utf-8")
+    name = re.sub(r"[^\w.-]+", "-", item.nodeid).strip("-")[-MAX_NAME:]
+    mine = folder / name
+    shutil.rmtree(mine, ignore_errors=True)
+    mine.mkdir(parents=True)
+    return mine
 
 
 @pytest.fixture(scope="session")

@@ -8,8 +8,7 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from arm_sim.bench.emulator_program import run_emulator
-from arm_sim.bench.serial_device import TimedBytes
+from arm_sim.bench.serial_device import TimedBytes, run_emulator
 
 EVERY = 254
 MEMORY = 86

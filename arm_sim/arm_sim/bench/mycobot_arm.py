@@ -7,8 +7,7 @@ port:=/tmp/mycobot`. The frames are written here once more, so that the driver i
 import sys
 from collections.abc import Iterator, Sequence
 
-from arm_sim.bench.emulator_program import run_emulator
-from arm_sim.bench.serial_device import TimedBytes
+from arm_sim.bench.serial_device import TimedBytes, run_emulator
 
 LIMITS_DEGREES = ((-168, 168), (-140, 140), (-150, 150), (-150, 150), (-155, 160), (-180, 180))
 DEGREES_PER_S = 1.6

@@ -1,10 +1,16 @@
-"""An emulated device behind a serial port: a pseudo terminal, paced bytes, faults, unplugging."""
+"""An emulated device behind a serial port: a pseudo terminal, paced bytes, faults, unplugging.
 
+`run_emulator` is the command line of the programs that emulate one.
+"""
+
+import argparse
 import contextlib
 import heapq
 import os
 import random
 import select
+import signal
+import sys
 import termios
 import threading
 import time
@@ -213,3 +219,36 @@ class EmulatedPort:
 
     def _wire_s(self, data: bytes) -> float:
         return BITS_PER_BYTE * len(data) / self._device.baud
+
+
+def run_emulator(
+    what: str, device: SerialDevice, path: str, argv: Sequence[str] | None = None
+) -> int:
+    """Run an emulated device until a signal; return the exit code.
+
+    Args:
+        what: the device, for messages.
+        device: answers the requests.
+        path: default of the port's path.
+        argv: arguments; default sys.argv.
+    """
+    parser = argparse.ArgumentParser(description=f"Emulates {what} behind a serial port.")
+    parser.add_argument(
+        "--port", type=Path, default=Path(path), help="path of the port (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--faults", type=float, default=0.0, help="fraction of faulty replies, from 0 to 1"
+    )
+    options = parser.parse_args(argv)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        with EmulatedPort(device, options.port, ReplyFaults(options.faults)):
+            sys.stdout.write(f"{what} at {options.port}\n")
+            sys.stdout.flush()
+            signal.pause()
+    except KeyboardInterrupt:
+        return 0
+    except BenchError as error:
+        sys.stderr.write(f"{error}\n")
+        return 2
+    return 0
