@@ -1,4 +1,4 @@
-"""Pictures on demand are those that the camera process would publish."""
+"""Pictures that a program asks for are those that the camera process would publish."""
 
 import os
 
@@ -8,7 +8,6 @@ import pytest
 from arm_control.hardware.info import parse_hardware_info
 from arm_description.urdf.description import RobotDescription
 from arm_description.urdf.parser import parse_urdf
-from arm_gazebo.camera.on_demand import OnDemandCameras
 from arm_gazebo.camera.pipeline import CameraPipeline
 from arm_gazebo.feed.schedule import FrameDue
 from arm_gazebo.feed.snapshot import CameraSnapshot
@@ -19,6 +18,7 @@ from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
 from arm_gazebo.rendering.backend_selection import backend_order, open_renderer
 from arm_gazebo.sensors.camera_reader import parse_cameras
+from arm_sim.cameras import RobotCameras
 
 pytestmark = pytest.mark.gl
 
@@ -81,8 +81,8 @@ def test_a_picture_is_that_of_the_camera_process_with_its_noise():
     )
     pipeline.close()
     os.close(file)
-    on_demand = OnDemandCameras(simulation, cameras, "auto", SEED)
-    assert np.array_equal(on_demand.picture(0), sink.pictures[0])
-    on_demand.reseed(SEED + 1)
-    assert not np.array_equal(on_demand.picture(0), sink.pictures[0])
-    on_demand.close()
+    asked = RobotCameras(simulation, cameras, "auto", SEED)
+    assert np.array_equal(asked.find("eye").image(), sink.pictures[0])
+    asked.reseed(SEED + 1)
+    assert not np.array_equal(asked.find("eye").image(), sink.pictures[0])
+    asked.close()
