@@ -87,7 +87,8 @@ class ChildProcess:
         before_kill: Callable[[], None],
     ) -> None:
         self.spec = spec
-        self._killed = False
+        self.killed = False
+        """Whether it had to be ended by SIGKILL."""
         self.ended = False
         self._loop = loop
         self._on_line = on_line
@@ -102,11 +103,6 @@ class ChildProcess:
     def pid(self) -> int:
         """The process id, which is also its session id and group id."""
         return self._process.pid
-
-    @property
-    def killed(self) -> bool:
-        """Whether it had to be ended by SIGKILL."""
-        return self._killed
 
     def stop(self, delays: StopDelays) -> None:
         """Send SIGINT to the process, then SIGTERM and SIGKILL to its group, until it ends.
@@ -130,7 +126,7 @@ class ChildProcess:
             return
         self._before_kill()
         if self._exit_code is None:
-            self._killed = True
+            self.killed = True
         else:
             # A remaining process may be a zombie that its parent never reaps: do not wait for it.
             self._escalate(GROUP_GRACE_S, self._end)

@@ -22,7 +22,7 @@ import threading
 import time
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 
 from launch_py.fast_dds.removal import remove_abandoned
@@ -145,8 +145,11 @@ def supervise_in_fork(supervise: Callable[[int], int], *, with_key: bool = False
     if supervisor_pid == 0:
         _run_supervisor(supervise, foreground_pid)
     remove_abandoned()
-    keys = _key_passed_on(supervisor_pid) if with_key else nullcontext()
-    with keys:
+
+    def pass_key_on() -> None:
+        linux.signal_process(supervisor_pid, KEY_SIGNAL)
+
+    with space_bar_watched(STANDARD_INPUT, pass_key_on) if with_key else nullcontext():
         return _pass_signals_on(supervisor_pid, awaited)
 
 
@@ -164,14 +167,6 @@ def _pass_signals_on(supervisor_pid: int, awaited: set[signal.Signals]) -> int:
             if code < 0 or code == EXIT_CRASHED:
                 remove_abandoned()
             return code if code >= 0 else 128 - code
-
-
-def _key_passed_on(supervisor_pid: int) -> AbstractContextManager[None]:
-    # Imported only here, because most launches have no terminal.
-
-    return space_bar_watched(
-        STANDARD_INPUT, lambda: linux.signal_process(supervisor_pid, KEY_SIGNAL)
-    )
 
 
 def stop_signals() -> list[signal.Signals]:

@@ -33,6 +33,7 @@ from launch_py.supervision import linux
 from launch_py.supervision.event_loop import EventLoop, Timer
 from launch_py.supervision.runner import LocalRunner, ProbeClient
 from launch_py.system.child_environment import for_program
+from launch_py.system.dds_profile import RANGE, STATIC_PEERS
 
 
 class Replacement:
@@ -121,7 +122,6 @@ Fast DDS announces itself every 3 s."""
 PAGE = "/arm_viewer"
 PAGE_ALONE = "for the page alone, of what runs already: arm view"
 
-RANGE, PEERS = "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS"
 Census = Mapping[str, Sequence[int | None]]
 
 
@@ -175,7 +175,7 @@ class NameGuard:
             ports = find_ports(domain)
             others_here = bool(ports.indices)
             reach = environment.get(RANGE, "")
-            elsewhere = reach != "LOCALHOST" or bool(environment.get(PEERS))
+            elsewhere = reach != "LOCALHOST" or bool(environment.get(STATIC_PEERS))
             if reach == "OFF" or not (others_here or elsewhere):
                 continue
             names = self._names_in(domain, steps)
