@@ -13,6 +13,8 @@ from arm_drivers.errors import PortError
 
 CHUNK = 4096
 WRITE_TIMEOUT_S = 0.1
+BITS_PER_BYTE = 10
+"""On the wire: a start bit, eight data bits, a stop bit."""
 GONE = (OSError, termios.error)
 """What an unplugged port raises: pyserial's own error is an OSError, that of tcflush is not."""
 
@@ -76,6 +78,19 @@ class SerialLine:
         if not received:
             raise PortError(f"port {self.port} has gone: its other end was closed")
         return received
+
+    def wait_for_silence(self, silence_s: float) -> None:
+        """Drop bytes until none has come for this long.
+
+        Raises:
+            PortError: the port has gone.
+        """
+        while self.receive(self.now_s() + silence_s):
+            pass
+
+    def wire_s(self, count: int) -> float:
+        """Return how long so many bytes are on the wire."""
+        return BITS_PER_BYTE * count / self.baud
 
     def close(self) -> None:
         """Close the port; any error of a port that has gone is of no interest."""

@@ -8,11 +8,12 @@ from setuptools.command.build import build
 from setuptools.command.build_ext import build_ext
 from setuptools.command.egg_info import egg_info
 
-from interface_build import share_folder
 from interface_build.interface_package import InterfacePackage, find_packages
 from interface_build.project import DEFINITIONS, read_project
 from interface_build.toolchain import find_toolchain
 from interface_build.work_folder import scratch_folder
+
+_INDEX = "share/ament_index/resource_index"
 
 
 class BuildProgress:
@@ -73,7 +74,7 @@ class BuildInterfaces(build_ext):
         _build_packages(packages, Path(self.build_lib))
         markers = scratch_folder("markers")
         self.distribution.data_files = [
-            entry for package in packages for entry in share_folder.data_files(package, markers)
+            entry for package in packages for entry in _shared_files(package, markers)
         ]
 
 
@@ -101,3 +102,41 @@ def _build_packages(packages: tuple[InterfacePackage, ...], target: Path) -> Non
         for package in packages
     ]
     build_all(builds, progress.report)
+
+
+def _shared_files(package: InterfacePackage, work: Path) -> list[tuple[str, list[str]]]:
+    """List the files for ``share`` by their folder there, in setuptools' form.
+
+    Recorders and command-line tools read definitions there. The markers of the ament index are
+    generated into the folder ``work``.
+    """
+    share = f"share/{package.name}"
+    definitions = [
+        (
+            f"{share}/{kind}",
+            [str(package.root / i.source) for i in package.interfaces if i.kind == kind],
+        )
+        for kind in package.kinds
+    ]
+    return [
+        (share, [str(package.root / "package.xml")]),
+        *definitions,
+        (f"{_INDEX}/packages", [_write_marker(work / "packages", package.name, "")]),
+        (
+            f"{_INDEX}/rosidl_interfaces",
+            [_write_marker(work / "rosidl_interfaces", package.name, _list_interfaces(package))],
+        ),
+    ]
+
+
+def _list_interfaces(package: InterfacePackage) -> str:
+    """List the definition files, one per line, for ``interface list``."""
+    return "\n".join(interface.source for interface in package.interfaces)
+
+
+def _write_marker(folder: Path, name: str, content: str) -> str:
+    """Write one file of the ament index; return its path."""
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / name
+    path.write_text(content, encoding="utf-8")
+    return str(path)

@@ -8,7 +8,6 @@ so each needs its own process, not only a thread.
 import contextlib
 import io
 import json
-import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -22,7 +21,7 @@ from rosidl_adapter.msg import convert_msg_to_idl
 from rosidl_adapter.srv import convert_srv_to_idl
 from rosidl_generator_py.generate_py_impl import generate_py
 
-from interface_build import parse_cache, template_cache
+from interface_build import generator_caches
 from interface_build.interface_package import InterfacePackage
 from interface_build.ros_prefix import RosPrefix
 from interface_build.work_folder import WorkFolder
@@ -33,8 +32,6 @@ _CONVERTERS = {
     "action": convert_action_to_idl,
 }
 
-CACHES = {"parse_cache": parse_cache.install, "template_cache": template_cache.install}
-
 # rmw_fastrtps serialises with the first, but create_publisher registers a type with the second.
 _TYPE_SUPPORTS = ["rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c"]
 
@@ -44,7 +41,7 @@ def describe(package: InterfacePackage, work: WorkFolder, prefix: RosPrefix) -> 
 
     The packages that this one uses must be described.
     """
-    _install_caches()
+    generator_caches.install()
     work.create()
     with contextlib.redirect_stdout(io.StringIO()):
         for interface in package.interfaces:
@@ -136,21 +133,10 @@ def _generate(
     prefix: RosPrefix,
 ) -> None:
     """Run one generator silently with its templates."""
-    _install_caches()
+    generator_caches.install()
     arguments["template_dir"] = str(prefix.template_folder(name))
     with contextlib.redirect_stdout(io.StringIO()):
         generator(_write_arguments(work, name, arguments))
-
-
-def _install_caches() -> None:
-    """Cache repeated work of the generators in this worker process.
-
-    ARM_WITHOUT switches the caches off by name, like the workarounds of the suite.
-    """
-    off = {word.strip() for word in os.environ.get("ARM_WITHOUT", "").split(",")}
-    for name, install in CACHES.items():
-        if off.isdisjoint({name, "all"}):
-            install()
 
 
 def _arguments(package: InterfacePackage, work: WorkFolder, output: Path) -> dict[str, object]:

@@ -241,7 +241,7 @@ def test_a_lazy_package_imports_a_class_on_its_first_use(
 def test_templates_read_once_give_the_same_text(build_module: Any) -> None:
     code = """
 import em, io
-from interface_build import template_cache
+from interface_build import generator_caches
 template = '@[for n in names]@[if n == "b"]second@[else]other@[end if]\\n@[end for]@{m = 2}@(m)'
 def expand(names):
     output = io.StringIO()
@@ -253,7 +253,7 @@ def expand(names):
     interpreter.shutdown()
     return text
 plain = expand("ab"), expand("bc")
-template_cache.install()
+generator_caches.install()
 assert (expand("ab"), expand("bc"), expand("ab")) == (*plain, plain[0]), plain
 print(plain[1])
 """

@@ -15,8 +15,6 @@ from arm_drivers.feetech.frames import (
 from arm_drivers.feetech.registers import Register
 from arm_drivers.serial_line import SerialLine
 
-BITS_PER_BYTE = 10
-"""On the wire: a start bit, eight data bits, a stop bit."""
 READS = 3
 """How often a read is tried. A write is never repeated: a reply may be lost that the servo sent."""
 
@@ -101,11 +99,10 @@ class FeetechBus:
         last, self._last_read = self._last_read, (address, count)
         if last[0] != address and last[1] == count:
             # A late reply with another register of the same length would pass every check.
-            self._wait_for_silence()
+            self.line.wait_for_silence(self._reply_timeout_s)
         collector = ReplyCollector(request, servos, count)
         self.line.send(request)
-        expected = len(request) + (count + AROUND_DATA) * len(servos)
-        wire_s = self._wire_s(expected)
+        wire_s = self.line.wire_s(len(request) + (count + AROUND_DATA) * len(servos))
         deadline_s = self.line.now_s() + wire_s + self._reply_timeout_s
         # To wake up for each piece that arrives meanwhile costs several times the processor time.
         self.line.sleep(wire_s)
@@ -115,10 +112,3 @@ class FeetechBus:
                 break
             collector.take(received)
         return collector
-
-    def _wait_for_silence(self) -> None:
-        while self.line.receive(self.line.now_s() + self._reply_timeout_s):
-            pass
-
-    def _wire_s(self, count: int) -> float:
-        return BITS_PER_BYTE * count / self.line.baud

@@ -41,7 +41,6 @@ ERROR_EVERY = 10
 """The gripper and the error are read once in so many exchanges."""
 GRIPPER_SPEED = 80
 COLLISIONS = range(16, 20)
-BITS_PER_BYTE = 10
 
 
 class MyCobotArm:
@@ -191,10 +190,9 @@ class MyCobotArm:
         become slow would be taken for that to the next request.
         """
         if self._missed_last:
-            while self._line.receive(self._line.now_s() + self._reply_timeout_s):
-                pass
+            self._line.wait_for_silence(self._reply_timeout_s)
         self._line.send(request(command))
-        wire_s = BITS_PER_BYTE * (REPLY_SIZES[command] + 2 * AROUND_DATA) / self._line.baud
+        wire_s = self._line.wire_s(REPLY_SIZES[command] + 2 * AROUND_DATA)
         deadline_s = self._line.now_s() + wire_s + self._reply_timeout_s
         received, data = b"", None
         while data is None:
