@@ -1,11 +1,12 @@
 """The executable arm_viewer_node: serves the browser page."""
 
+import io
 import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 from arm_description.errors import DescriptionError
 from arm_node.notify import notify
@@ -17,6 +18,8 @@ from arm_viewer.errors import ConfigError, ViewerError
 if TYPE_CHECKING:
     from rclpy.node import Node
 
+    from arm_viewer.page_server import PageServer
+
 
 @contextmanager
 def application(process: NodeProcess) -> Iterator[None]:
@@ -25,7 +28,6 @@ def application(process: NodeProcess) -> Iterator[None]:
     sys.modules.setdefault("scipy", None)  # pyright: ignore[reportArgumentType]
     # Imported only after the environment is prepared, because it locates the message packages.
     from arm_viewer.access import TOKEN_VARIABLE, Access
-    from arm_viewer.invitation import invitation
     from arm_viewer.page import page_running
     from arm_viewer.page_server import page_server
     from arm_viewer.recordings.player import Player
@@ -78,6 +80,33 @@ def _recordings(node: "Node") -> tuple[Path, Path | None]:
     )
     first = declare(node, "recording", "", read_text, "recording that the page shows first")
     return Path(folder), Path(first) if first else None
+
+
+def invitation(server: "PageServer", terminal: TextIO) -> str:
+    """Return the addresses of a page that needs a token, and the first one as a QR code.
+
+    Args:
+        server: serves the page.
+        terminal: where it will be printed; the code needs a terminal that is wide enough.
+    """
+    access = server.access
+    urls = [server.url_with(token) for token in (access.token, access.read_only_token) if token]
+    words = ["the page is at", "the page is, for looking only, at"][-len(urls) :]
+    lines = [f"{word} {url}\n" for word, url in zip(words, urls, strict=True)]
+    return "".join(lines) + _qr_code(urls[0], terminal)
+
+
+def _qr_code(text: str, terminal: TextIO) -> str:
+    if not terminal.isatty():
+        return ""
+    import segno
+
+    code = segno.make(text, error="l")
+    if os.get_terminal_size(terminal.fileno()).columns < code.symbol_size()[0]:
+        return ""
+    drawn = io.StringIO()
+    code.terminal(drawn, compact=True)
+    return drawn.getvalue()
 
 
 def main(argv: Sequence[str] | None = None) -> int:

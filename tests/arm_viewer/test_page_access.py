@@ -19,9 +19,9 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from arm_viewer.access import Access
+from arm_viewer.arm_viewer_node import invitation
 from arm_viewer.channel import PATH, READ_ONLY
 from arm_viewer.errors import PageError
-from arm_viewer.invitation import invitation
 from arm_viewer.page import page_running
 from arm_viewer.page_server import page_server
 from arm_viewer.requests import (

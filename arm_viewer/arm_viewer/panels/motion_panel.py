@@ -1,18 +1,25 @@
 """Plans and executes motions of one robot: its goal, its buttons, and the plan in the scene."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
+import numpy as np
 from viser import GuiApi, GuiButtonHandle, SceneApi
 
+from arm_description.transforms import rotation_from_quaternion, rpy_from_rotation
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.robot.model import JointPositions
+from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
 from arm_planning.scene.frames import LinkPoses
 from arm_viewer.panels.panel import PROBLEM_COLOUR, distinct, in_order, note, show
-from arm_viewer.panels.path_player import PathPlayer
 from arm_viewer.panels.robot_panel import link_frames
 from arm_viewer.panels.scene_object_panel import SceneObjectPanel
-from arm_viewer.panels.tip_fields import TipFields
-from arm_viewer.planning import Activity, JogView, PlanningView, default_group, named_poses
+from arm_viewer.planning import (
+    Activity,
+    JogView,
+    PlanningView,
+    ShownPlan,
+    default_group,
+    named_poses,
+)
 from arm_viewer.planning_requests import (
     DragTip,
     ExecutePlan,
@@ -24,13 +31,18 @@ from arm_viewer.planning_requests import (
 from arm_viewer.requests import Request, Send
 from arm_viewer.scene.drag_handle import DragHandle
 from arm_viewer.scene.frames import Frames, node_name
-from arm_viewer.scene.ghost import Colour, Ghost
+from arm_viewer.scene.ghost import Colour, Ghost, Trail
 from arm_viewer.snapshot import Snapshot
+from arm_viewer.world.shape_fields import read_pose
 
 GOAL_COLOUR: Colour = (240, 140, 30)
 NO_POSE = "choose..."
 PRESENT = "(where it is)"
 LEAST_SCALING, STEP = 0.01, 0.01
+TIP_DIGITS = 4
+PATH_COLOUR: Colour = (40, 120, 220)
+PATH_END = 100.0
+PATH_STEP = 0.5
 
 
 class MotionPanel:
@@ -51,7 +63,7 @@ class MotionPanel:
         with self._folder:
             self._build_goal(gui)
             self._build_motion(gui)
-            self._player = PathPlayer(gui, scene, view.namespace, view.model)
+            self._player = _PathPlayer(gui, scene, view.namespace, view.model)
         self._place = gui.add_folder("Planning scene", expand_by_default=False)
         with self._place:
             self._objects = SceneObjectPanel(gui, scene, view.namespace, view.model, send)
@@ -105,7 +117,7 @@ class MotionPanel:
             hint="the robot itself follows the tip, by servo_node, as long as you drag",
         )
         self._drag = 0
-        self._tip = TipFields(gui, self._set_tip)
+        self._tip = _TipFields(gui, self._set_tip)
         self._texts = {place: gui.add_html("", visible=False) for place in ("jog", "goal")}
         self._group.on_update(in_order(lambda _: self._choose_group()))
         self._pose.on_update(in_order(lambda event: self._choose_pose(event.client_id)))
@@ -231,3 +243,141 @@ def _said(view: PlanningView) -> tuple[str, str]:
 def _set_disabled(button: GuiButtonHandle, disabled: bool) -> None:
     if button.disabled != disabled:
         button.disabled = disabled
+
+
+class _TipFields:
+    """The goal of a group's tip by numbers: where it is, and how it is turned."""
+
+    def __init__(self, gui: GuiApi, take: Callable[[RigidTransform], None]) -> None:
+        """Create the elements in the open container.
+
+        Args:
+            gui: gets the elements.
+            take: gets the pose in the frame of the robot's root, in m.
+        """
+        self._take = take
+        self._of = ""
+        self._folder = gui.add_folder("Tip by numbers", expand_by_default=False)
+        with self._folder:
+            self._position = gui.add_text("Tip at", "", hint="x y z from the robot's root, in m")
+            self._rpy = gui.add_text("Tip turned", "", hint="roll pitch yaw in rad")
+            go = gui.add_button("Set goal", color="gray")
+            self._problem = gui.add_html("", visible=False)
+        go.on_click(in_order(lambda _: self._read()))
+
+    def show(self, group: JointGroup | None, pose_of: Callable[[str], RigidTransform]) -> None:
+        """Begin with a group's pose; hide the fields for a group without a tip.
+
+        Args:
+            group: that is chosen.
+            pose_of: returns the present pose of a link.
+        """
+        show(self._folder, group is not None and bool(group.tip))
+        if group is not None and group.tip and group.name != self._of:
+            self._of = group.name
+            tip = pose_of(group.tip)
+            self._position.value = _numbers_text(tip.position)
+            rotation = rotation_from_quaternion(np.array(tip.rotation))
+            self._rpy.value = _numbers_text(rpy_from_rotation(rotation))
+
+    def _read(self) -> None:
+        problem = ""
+        try:
+            self._take(read_pose(self._position.value, self._rpy.value))
+        except ValueError as error:
+            problem = str(error)
+        self._problem.content = note(problem, PROBLEM_COLOUR)
+        self._problem.visible = bool(problem)
+
+
+def _numbers_text(numbers: tuple[float, ...]) -> str:
+    # Adding 0 turns -0.0 into 0.0.
+    return " ".join(f"{round(number, TIP_DIGITS) + 0.0:g}" for number in numbers)
+
+
+class _PathPlayer:
+    """The plan in the scene: a ghost on the way, a slider along it, and the trail of its tip.
+
+    It plays a plan once when it arrives.
+    """
+
+    def __init__(self, gui: GuiApi, scene: SceneApi, namespace: str, model: PlanningModel) -> None:
+        """Create the elements in the open container; they are hidden without a plan."""
+        self._ghost = Ghost(scene, f"{namespace}/path", model, PATH_COLOUR)
+        self._trail = Trail(scene, f"{namespace}/trail", PATH_COLOUR)
+        self._slider = gui.add_slider(
+            "Along path",
+            0.0,
+            PATH_END,
+            PATH_STEP,
+            PATH_END,
+            visible=False,
+            hint="% of the plan's time",
+        )
+        self._play = gui.add_button("Play", visible=False, color="gray")
+        self._plan: ShownPlan | None = None
+        self._origin: RigidTransform | None = None
+        self._started_s: float | None = None
+        self._is_wanted = False
+        self._slider.on_update(in_order(lambda event: self._pull(event.client_id)))
+        self._play.on_click(in_order(lambda _: self._want()))
+
+    def update(
+        self, plan: ShownPlan | None, origin: RigidTransform, present: JointPositions, now_s: float
+    ) -> None:
+        """Show a plan.
+
+        Args:
+            plan: the plan; None for none.
+            origin: pose of the robot's root link in the scene.
+            present: present positions of joints, for those that the plan does not know.
+            now_s: monotonic time.
+        """
+        if plan is None:
+            self._hide()
+            return
+        before = self._plan
+        if before is None or plan.path is not before.path or origin != self._origin:
+            self._trail.show(origin, plan.path.trail())
+            self._is_wanted |= before is None or not plan.path.is_same(before.path)
+            self._slider.visible = self._play.visible = True
+        self._plan, self._origin = plan, origin
+        if self._is_wanted:
+            self._is_wanted, self._started_s = False, now_s
+        if self._started_s is not None:
+            self._advance(plan.path.duration_s, now_s - self._started_s)
+        share = self._slider.value / PATH_END
+        if share >= 1.0:
+            # There the goal's ghost is, or the robot itself.
+            self._ghost.hide()
+        else:
+            state = plan.path.positions_at(share * plan.path.duration_s)
+            self._ghost.show(origin, state, present)
+
+    def remove(self) -> None:
+        """Remove everything from the scene; the elements go with their container."""
+        self._ghost.remove()
+        self._trail.hide()
+
+    def _hide(self) -> None:
+        if self._plan is not None:
+            self._plan = self._started_s = None
+            self._slider.visible = self._play.visible = False
+            self._trail.hide()
+            self._ghost.hide()
+
+    def _advance(self, duration_s: float, time_s: float) -> None:
+        share = min(time_s / duration_s, 1.0) if duration_s > 0.0 else 1.0
+        self._slider.value = (
+            PATH_END if share == 1.0 else round(PATH_END * share / PATH_STEP) * PATH_STEP
+        )
+        if share == 1.0:
+            self._started_s = None
+
+    def _pull(self, client_id: int | None) -> None:
+        # Without a client the change came from `_advance`.
+        if client_id is not None:
+            self._started_s = None
+
+    def _want(self) -> None:
+        self._is_wanted = True

@@ -1,20 +1,21 @@
 """The planning scene's objects: what is there, and fields to add and remove some."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from viser import GuiApi, SceneApi
 
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.robot.model import PlanningModel
 from arm_planning.scene.frames import LinkPoses
+from arm_planning.scene.objects import CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
-from arm_viewer.new_object import ObjectFields, new_object
 from arm_viewer.panels.panel import PROBLEM_COLOUR, in_order, note
 from arm_viewer.planning import PlanningView
 from arm_viewer.planning_requests import AddObject, RemoveObject
 from arm_viewer.requests import Send
 from arm_viewer.scene.planning_objects import PlanningObjects
-from arm_viewer.world.shape_fields import KINDS, SIZE_HINT, ObjectKind
+from arm_viewer.world.shape_fields import KINDS, SIZE_HINT, ObjectKind, read_pose, read_shape
 
 NOTHING = "(none)"
 EMPTY = "The planning scene has no objects."
@@ -103,6 +104,38 @@ class SceneObjectPanel:
         self._wrong = ""
         if self._chosen.value != NOTHING:
             self._send(RemoveObject(self._namespace, self._chosen.value))
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectFields:
+    """What the user has entered, as it is.
+
+    Attributes:
+        name: name of the object.
+        kind: its shape.
+        size: the lengths of its kind, in m.
+        position: of its centre in the planning frame, x y z in m.
+        rpy: roll, pitch and yaw, in rad.
+    """
+
+    name: str
+    kind: ObjectKind
+    size: str
+    position: str
+    rpy: str
+
+
+def new_object(fields: ObjectFields) -> CollisionObject:
+    """Return the object.
+
+    Raises:
+        ValueError: it has no name, or a number cannot be used; the message is a sentence.
+    """
+    name = fields.name.strip()
+    if not name:
+        raise ValueError("The object needs a name.")
+    pose = read_pose(fields.position, fields.rpy)
+    return CollisionObject(name, pose, (PlacedShape(read_shape(fields.kind, fields.size)),))
 
 
 def options(names: Iterable[str]) -> tuple[str, ...]:

@@ -6,25 +6,34 @@ from html import escape
 
 from viser import GuiApi, GuiHtmlHandle, SceneApi
 
-from arm_node.rigid_transform import RigidTransform
+from arm_node.rigid_transform import RigidTransform, Vector
 from arm_viewer.channel import Browser, Channel, Message
 from arm_viewer.panels.file_drop import FileDrop
 from arm_viewer.panels.panel import PROBLEM_COLOUR, distinct, in_order, note, show
-from arm_viewer.panels.property_fields import GravityFields, PropertyFields
-from arm_viewer.panels.thing_fields import POSITION_M, ThingFieldsPanel
 from arm_viewer.requests import Send
 from arm_viewer.scene.drag_handle import DragHandle
 from arm_viewer.snapshot import Snapshot
 from arm_viewer.world.dropped_file import DroppedFile
-from arm_viewer.world.shape_fields import read_numbers, read_pose
+from arm_viewer.world.new_thing import ThingFields, new_thing
+from arm_viewer.world.shape_fields import (
+    KINDS,
+    SIZE_HINT,
+    ObjectKind,
+    read_number,
+    read_numbers,
+    read_pose,
+)
 from arm_viewer.world.world_view import Thing, ThingProperties, WorldView, gravity_words
 from arm_viewer.world_requests import (
     AddFile,
+    AddThing,
     LookAtThing,
     OpenWorld,
     PlaceThing,
     PushThing,
     RemoveThing,
+    SetGravity,
+    SetProperties,
     WorldRequest,
 )
 
@@ -38,10 +47,16 @@ DROP = "Drop a URDF, SDF or STL file anywhere on the page; it goes to the positi
 PUSH_M_S = "0.5 0 0"
 UNITS_M = {"metres": 1.0, "millimetres": 0.001, "inches": 0.0254}
 HANDLE = "/world_handle"
+ORANGE = (230, 119, 0)
+POSITION_M, NO_TURN = "0.25 0 0.2", "0 0 0"
+GRAVITIES = {"Earth": "0 0 -9.81", "Moon": "0 0 -1.62", "Mars": "0 0 -3.72", "none": "0 0 0"}
 
 
 class WorldPanel:
-    """What the simulation has around the robots; the choice is one for all browsers."""
+    """What the simulation has around the robots; the choice is one for all browsers.
+
+    Use it in viser's event loop.
+    """
 
     def __init__(self, scene: SceneApi, channel: Channel, send: Send) -> None:
         """Draw the handle into this scene; send requests with `send`."""
@@ -64,9 +79,9 @@ class WorldPanel:
         with gui.add_folder("Chosen thing") as self._deeds:
             self._build_deeds(gui)
         with gui.add_folder("Gravity", expand_by_default=False) as self._gravities:
-            self._gravity = GravityFields(gui)
+            self._gravity = _GravityFields(gui)
         with gui.add_folder("Add", expand_by_default=False) as adding:
-            self._fields = ThingFieldsPanel(gui)
+            self._fields = _ThingFieldsPanel(gui)
             add = gui.add_button("Add")
         with gui.add_folder("Add a file", expand_by_default=False) as files:
             gui.add_html(note(DROP))
@@ -120,11 +135,11 @@ class WorldPanel:
     def _build_deeds(self, gui: GuiApi) -> None:
         self._where = gui.add_html("")
         self._position = gui.add_text("Move to", POSITION_M, hint="x y z in the world, in m")
-        self._rpy = gui.add_text("Turn to", "0 0 0", hint="roll pitch yaw in rad")
+        self._rpy = gui.add_text("Turn to", NO_TURN, hint="roll pitch yaw in rad")
         move = gui.add_button("Move", hint="or drag the arrows and rings in the view")
         self._push_by = gui.add_text("Push to", PUSH_M_S, hint="velocity x y z in m/s")
         self._push = gui.add_button("Push")
-        self._properties = PropertyFields(gui)
+        self._properties = _PropertyFields(gui)
         delete = gui.add_button("Delete", color="red")
         move.on_click(in_order(lambda _: self._try(self._move)))
         self._push.on_click(in_order(lambda _: self._try(self._pushed)))
@@ -209,3 +224,135 @@ def described(name: str, thing: Thing, properties: ThingProperties) -> str:
     turned = " ".join(f"{value:.2f}" for value in thing.pose.rpy())
     speed = f"; {thing.speed:.2f} m/s" if thing.can_move else ""
     return f"{name}: x y z {position} m, roll pitch yaw {turned} rad{speed}\n{properties.words()}"
+
+
+class _ThingFieldsPanel:
+    """The fields in which a user describes a thing to add to the world."""
+
+    def __init__(self, gui: GuiApi) -> None:
+        """Create the elements in the open container."""
+        self._kind = gui.add_dropdown("Shape", tuple(KINDS), initial_value=ObjectKind.BOX.word)
+        self._name = gui.add_text("Name", ObjectKind.BOX.word, hint="a taken name gets a number")
+        self._size = gui.add_text("Size", ObjectKind.BOX.example, hint=SIZE_HINT)
+        self._position = gui.add_text("Position", POSITION_M, hint="x y z in the world, in m")
+        self._rpy = gui.add_text("Orientation", NO_TURN, hint="roll pitch yaw in rad")
+        self._rgb = gui.add_rgb("Colour", ORANGE)
+        self._mass = gui.add_number("Mass", 0.1, min=0.0, step=0.001, hint="kg")
+        self._friction = gui.add_number("Friction", 1.0, min=0.0, step=0.01, hint="coefficient")
+        self._is_fixed = gui.add_checkbox("Fixed", False, hint="it stays where it is")
+        self._kind.on_update(in_order(lambda _: self._choose_kind()))
+
+    def request(self) -> AddThing:
+        """Return the request to add what the fields describe.
+
+        Raises:
+            ValueError: a field cannot be used; the message is a sentence.
+        """
+        fields = ThingFields(
+            self._name.value.strip(),
+            KINDS[self._kind.value],
+            self._size.value,
+            self._position.value,
+            self._rpy.value,
+            self._rgb.value,
+            self._mass.value,
+            self._friction.value,
+            self._is_fixed.value,
+        )
+        text, pose = new_thing(fields)
+        return AddThing(fields.name, text, pose)
+
+    def pose(self) -> RigidTransform:
+        """Return the pose in the fields.
+
+        Raises:
+            ValueError: it cannot be used; the message is a sentence.
+        """
+        return read_pose(self._position.value, self._rpy.value)
+
+    def _choose_kind(self) -> None:
+        kind = KINDS[self._kind.value]
+        self._size.value, self._name.value = kind.example, kind.word
+
+
+class _GravityFields:
+    """A field for the gravity, and some to choose.
+
+    Attributes:
+        set: the button that sets it.
+    """
+
+    def __init__(self, gui: GuiApi) -> None:
+        """Create the elements in the open container."""
+        # A dropdown would not take the same choice again after another one was typed.
+        self._like = gui.add_button_group("As on", tuple(GRAVITIES))
+        self._gravity = gui.add_text("Gravity", GRAVITIES["Earth"], hint="x y z in m/s²")
+        self.set = gui.add_button("Set gravity", hint="resetting puts the world's own back")
+        self._like.on_click(in_order(lambda _: self._choose()))
+        self._shown: Vector | None = None
+
+    def show(self, gravity: Vector | None) -> None:
+        """Show the present gravity, unless it is shown already: the user may be typing."""
+        if gravity is not None and gravity != self._shown:
+            self._shown = gravity
+            self._gravity.value = " ".join(f"{value:.4g}" for value in gravity)
+
+    def request(self) -> SetGravity:
+        """Return the request to set what is typed.
+
+        Raises:
+            ValueError: it is not a gravity; the message is a sentence.
+        """
+        x, y, z = read_numbers("gravity", self._gravity.value, ("x", "y", "z"))
+        return SetGravity((x, y, z))
+
+    def _choose(self) -> None:
+        self._gravity.value = GRAVITIES[self._like.value]
+
+
+class _PropertyFields:
+    """Fields for the properties of the chosen thing.
+
+    Attributes:
+        set: the button that sets them.
+    """
+
+    def __init__(self, gui: GuiApi) -> None:
+        """Create the elements in the open container."""
+        self._shown = ThingProperties()
+        self._mass = gui.add_text("Mass to", "", hint="in kg; it becomes evenly denser or lighter")
+        self._friction = gui.add_text(
+            "Friction to", "", hint="coefficient; of two shapes the lower one counts"
+        )
+        self.set = gui.add_button("Set", hint="mass and friction")
+        self.show(self._shown)
+
+    def show(self, properties: ThingProperties) -> None:
+        """Show the present properties, unless they are shown already: the user may be typing."""
+        show(self._mass, properties.mass_kg is not None)
+        show(self._friction, properties.friction is not None)
+        show(self.set, bool(properties.words()))
+        if properties != self._shown:
+            self._shown = properties
+            self._mass.value, self._friction.value = _texts(properties)
+
+    def request(self) -> SetProperties:
+        """Return the request to set what the user has changed.
+
+        Raises:
+            ValueError: that is nothing, or not a number; the message is a sentence.
+        """
+        mass, friction = _texts(self._shown)
+        mass_kg = read_number("mass", self._mass.value) if self._mass.value != mass else None
+        other = None
+        if self._friction.value != friction:
+            other = read_number("friction", self._friction.value)
+        if mass_kg is None and other is None:
+            raise ValueError("Type another mass or friction first: these are the present ones.")
+        return SetProperties(self._shown.name, mass_kg, other)
+
+
+def _texts(properties: ThingProperties) -> tuple[str, str]:
+    """Return mass and friction as the fields show them, "" for what is not known."""
+    mass, friction = properties.mass_kg, properties.friction
+    return "" if mass is None else f"{mass:.4g}", "" if friction is None else f"{friction:.4g}"

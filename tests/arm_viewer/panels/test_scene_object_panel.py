@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
-from arm_viewer.new_object import ObjectFields, new_object
+from arm_viewer.panels.scene_object_panel import ObjectFields, new_object
 from arm_viewer.world.shape_fields import ObjectKind
 
 FIELDS = ObjectFields(" box1 ", ObjectKind.BOX, "0.1 0.2 0.3", "1, 2, 3", f"0 0 {math.pi}")
