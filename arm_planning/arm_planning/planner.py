@@ -16,9 +16,13 @@ from arm_planning.collision.contact import CollisionContact
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.scene_difference import same_posture
-from arm_planning.constraints.constraints import MotionConstraints, joint_goal, pose_goal
+from arm_planning.constraints.constraints import (
+    MotionConstraints,
+    joint_goal,
+    pose_goal,
+    snap_to_limits,
+)
 from arm_planning.constraints.evaluation import ConstraintEvaluator, ConstraintResult
-from arm_planning.constraints.joint_goals import snap_to_limits
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.execution.remaining import remaining
 from arm_planning.kinematics.forward import ForwardKinematics, as_rigid_transform

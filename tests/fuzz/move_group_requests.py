@@ -27,7 +27,7 @@ from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planning_services import PlanningServices
 from arm_planning.ros.planning_session import PlanningSession
 from arm_planning.ros.robot_setup import PlanningSetup
-from arm_planning.ros.sequence_session import SequenceSession
+from arm_planning.ros.sequence_server import SequenceSession
 from arm_planning.ros.state_services import StateServices
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import SceneOutcome, change_scene

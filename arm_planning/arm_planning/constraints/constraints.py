@@ -1,17 +1,21 @@
 """Constraints on the robot's joints and on the poses of its links, by MoveIt's rules."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
-from arm_description.urdf.robot import Sphere
+from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import Quaternion, RigidTransform, Vector
+from arm_planning.robot.model import JointGroup, PlanningLimits
 from arm_planning.scene.objects import PlacedShape
+from arm_planning.scene.shapes import Cone, Shape
 
 JOINT_TOLERANCE = 1e-4
 POSITION_TOLERANCE_M = 1e-4
 ORIENTATION_TOLERANCE = 1e-3
 """MoveGroupInterface's defaults, rad and m."""
+SNAPPED_TOLERANCE = 1e-9
+"""Tolerance of a goal that was moved to a limit, rad or m."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,3 +113,80 @@ def pose_goal(link: str, pose: RigidTransform) -> MotionConstraints:
             ),
         ),
     )
+
+
+def tightened(constraints: MotionConstraints, share: float) -> MotionConstraints:
+    """Return constraints with a share of their tolerances; meshes and half spaces stay."""
+    return replace(
+        constraints,
+        joints=tuple(_tightened_joint(each, share) for each in constraints.joints),
+        positions=tuple(_tightened_position(each, share) for each in constraints.positions),
+        orientations=tuple(
+            _tightened_orientation(each, share) for each in constraints.orientations
+        ),
+    )
+
+
+def _tightened_joint(each: JointConstraint, share: float) -> JointConstraint:
+    # The middle of the two tolerances stays where it is.
+    middle = each.position + (each.above - each.below) / 2.0
+    half = share * (each.above + each.below) / 2.0
+    return replace(each, position=middle, above=half, below=half)
+
+
+def _tightened_position(each: PositionConstraint, share: float) -> PositionConstraint:
+    regions = tuple(
+        replace(region, shape=_tightened_shape(region.shape, share)) for region in each.regions
+    )
+    return replace(each, regions=regions)
+
+
+def _tightened_orientation(each: OrientationConstraint, share: float) -> OrientationConstraint:
+    x, y, z = each.tolerances
+    return replace(each, tolerances=(share * x, share * y, share * z))
+
+
+def _tightened_shape(shape: Shape, share: float) -> Shape:
+    match shape:
+        case Box():
+            x, y, z = shape.size
+            return Box((share * x, share * y, share * z))
+        case Sphere():
+            return Sphere(share * shape.radius)
+        case Cylinder():
+            return Cylinder(share * shape.radius, share * shape.length)
+        case Cone():
+            return Cone(share * shape.radius, share * shape.height)
+        case _:
+            return shape
+
+
+def snap_to_limits(
+    goal: MotionConstraints, group: JointGroup, warn: Callable[[str], None]
+) -> MotionConstraints:
+    """Return a goal whose joints can be reached, as MoveIt does it.
+
+    A joint whose whole tolerance is beyond a limit gets the limit as its goal, and `warn` is told.
+    """
+    limits = dict(zip(group.joints, group.limits, strict=True))
+    joints = tuple(
+        _snap(each, limits[each.joint], warn) if each.joint in limits else each
+        for each in goal.joints
+    )
+    return replace(goal, joints=joints)
+
+
+def _snap(
+    goal: JointConstraint, limits: PlanningLimits, warn: Callable[[str], None]
+) -> JointConstraint:
+    if goal.position - goal.below > limits.upper:
+        limit = limits.upper
+    elif goal.position + goal.above < limits.lower:
+        limit = limits.lower
+    else:
+        return goal
+    warn(
+        f"the goal of joint '{goal.joint}', {goal.position:.4g}, is beyond its limit; "
+        f"{limit:.4g} is used"
+    )
+    return replace(goal, position=limit, above=SNAPPED_TOLERANCE, below=SNAPPED_TOLERANCE)

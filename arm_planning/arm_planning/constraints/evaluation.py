@@ -20,9 +20,9 @@ from arm_planning.constraints.constraints import (
     OrientationConstraint,
     OrientationError,
     PositionConstraint,
+    tightened,
 )
 from arm_planning.constraints.regions import describe_shape, distance_outside, local_point
-from arm_planning.constraints.tolerances import tightened
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
 

@@ -1,7 +1,7 @@
 """Inverse kinematics: positions of a group's joints that bring a link to a pose.
 
 A search descends from the seed first, then from starts near the target, then from random ones (see
-`descent` and `starts`). Its length is counted in steps, not in time, and a timeout is turned into a
+`descent` and `search`). Its length is counted in steps, not in time, and a timeout is turned into a
 number of steps: the same call gives the same answer on a busy machine, or none when its time is up.
 """
 
@@ -27,9 +27,7 @@ from arm_planning.kinematics.descent import (
     target_of,
 )
 from arm_planning.kinematics.pose_target import checked_pose
-from arm_planning.kinematics.search import Orientation, Search
-from arm_planning.kinematics.shortfall import shortfall
-from arm_planning.kinematics.starts import Starts
+from arm_planning.kinematics.search import Orientation, Search, Starts, shortfall
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningLimits, PlanningModel
 
 Array = NDArray[np.float64]

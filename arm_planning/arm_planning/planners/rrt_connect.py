@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from arm_planning.planners.problem import length
 from arm_planning.planners.space import Space
-from arm_planning.planners.tree import Tree
 
 Array = NDArray[np.float64]
 
@@ -26,6 +25,53 @@ NEARBY = 0.7
 """Share of samples that are near to a state of the tree; the others are anywhere."""
 SPREAD = 0.18
 """Standard deviation of their distance from it, as a share of each joint's range."""
+FIRST_ROOM = 256
+"""States that a tree has room for at first."""
+
+
+class _StateTree:
+    """States that grow from roots, each with the one that it was reached from.
+
+    Args:
+        roots: the states to grow from, (r, n).
+    """
+
+    def __init__(self, roots: Array) -> None:
+        count, joints = roots.shape
+        # A row for each joint: the search for the nearest state then adds long rows.
+        self._states = np.empty((joints, max(FIRST_ROOM, 2 * count)))
+        self._states[:, :count] = roots.T
+        self._parents = [-1] * count
+
+    def __len__(self) -> int:
+        return len(self._parents)
+
+    def add(self, state: Array, parent: int) -> int:
+        """Add a state, (n,), that was reached from another; return its index."""
+        index = len(self._parents)
+        if index == self._states.shape[1]:
+            self._states = np.hstack([self._states, np.empty_like(self._states)])
+        self._states[:, index] = state
+        self._parents.append(parent)
+        return index
+
+    def state(self, index: int) -> Array:
+        """Return a state, (n,)."""
+        return self._states[:, index].copy()
+
+    def nearest(self, state: Array) -> int:
+        """Return the index of the state with the smallest Euclidean distance."""
+        squares = self._states[:, : len(self._parents)] - state[:, None]
+        np.multiply(squares, squares, out=squares)
+        return int(squares.sum(axis=0).argmin())
+
+    def path(self, index: int) -> Array:
+        """Return the states from a root to one, (m, n)."""
+        indices: list[int] = []
+        while index >= 0:
+            indices.append(index)
+            index = self._parents[index]
+        return self._states.T[indices[::-1]]
 
 
 def rrt_connect(
@@ -47,8 +93,8 @@ def rrt_connect(
     Yields:
         None after each iteration that found no path; then the path, (m, n), once.
     """
-    from_start = growing = Tree(start[None, :])
-    other = Tree(goals)
+    from_start = growing = _StateTree(start[None, :])
+    other = _StateTree(goals)
     for anywhere, change, part in _draws(space, seed):
         sample = anywhere
         if part < 1.0:
@@ -75,14 +121,14 @@ def _draws(space: Space, seed: Sequence[int]) -> Iterator[tuple[Array, Array, fl
         yield from zip(states, changes, (random.random(BLOCK) / NEARBY).tolist(), strict=True)
 
 
-def _explore(space: Space, tree: Tree, sample: Array, reach: float) -> int | None:
+def _explore(space: Space, tree: _StateTree, sample: Array, reach: float) -> int | None:
     """Grow a tree one move towards a sample; return the new state's index."""
     near = tree.nearest(sample)
     target = space.project(_towards(tree.state(near), sample, reach))
     return None if target is None else _grow(space, tree, near, target)[0]
 
 
-def _follow(space: Space, tree: Tree, target: Array, reach: float) -> int | None:
+def _follow(space: Space, tree: _StateTree, target: Array, reach: float) -> int | None:
     """Grow a tree towards a state as far as it gets; return the index where it arrives."""
     near = tree.nearest(target)
     while True:
@@ -99,7 +145,7 @@ def _follow(space: Space, tree: Tree, target: Array, reach: float) -> int | None
         near = grown
 
 
-def _grow(space: Space, tree: Tree, parent: int, target: Array) -> tuple[int | None, bool]:
+def _grow(space: Space, tree: _StateTree, parent: int, target: Array) -> tuple[int | None, bool]:
     """Move from a state of a tree; return the last new state, and whether it is the target."""
     states, arrived = space.advance(tree.state(parent), target)
     grown = None

@@ -8,14 +8,14 @@ from collections.abc import Callable
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
 from arm_node.names import listing
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_node.workarounds.clocks import StampClock
+from arm_node.workarounds.clocks import CLOCK_TOPIC, USE_SIM_TIME, StampClock
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import NANOSECONDS, seconds
-from arm_planning.ros.held_time import HeldTime
 
 DEPTH = 20
 """Messages kept until they are read: several publishers may share the topic."""
@@ -24,6 +24,9 @@ FRESH_S = 0.05
 LATE_S = 0.25
 """After so long without a state, /clock is asked for the first time."""
 POLL_S = 0.001
+SILENCE_S = 0.25
+"""A clock of which nothing is heard for this long stands still."""
+NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class JointStateMonitor:
@@ -50,7 +53,7 @@ class JointStateMonitor:
         """On the system's clock, which is that of the middleware's time stamps."""
         self._clocks = [StampClock(each) for each in (node, *others)]
         self._polled = PolledSubscriptions(node)
-        self._time = HeldTime(node, self._polled)
+        self._time = _HeldTime(node, self._polled)
         self._subscription = self._polled.subscribe(
             JointState,
             "joint_states",
@@ -140,3 +143,56 @@ class JointStateMonitor:
                     self._positions[name] = position
                     if speeds:
                         self._velocities[name] = speeds[index]
+
+
+class _HeldTime:
+    """Tells whether simulation time stands still, paused or in lock-step. One thread at a time.
+
+    A simulation publishes /clock in each control period, which costs it and its subscribers
+    something, and not at all while time stands still. So the topic is subscribed to on the first
+    question, and then for good: where time was held once, it will be again.
+    """
+
+    def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
+        """Do nothing yet.
+
+        Args:
+            node: whose parameter `use_sim_time` counts.
+            polled: makes the subscription.
+        """
+        self._node = node
+        self._polled = polled
+        self._subscription = None
+        self._time_s: float | None = None
+        self._silent_since_s: float | None = None
+
+    @property
+    def is_heard(self) -> bool:
+        """Whether the clock is known, so that a question costs nothing more."""
+        return self._time_s is not None
+
+    def is_at(self, stamp_s: float, within_s: float, now_s: float) -> bool:
+        """Whether it is still about the time of a stamp; False where there is no simulation time.
+
+        After a first silence it is at any stamp: time that stood still before the subscription was
+        there is not known, and what was published last is the present.
+
+        Args:
+            stamp_s: the stamp.
+            within_s: how far simulation time may be from it.
+            now_s: wall time that never goes back.
+        """
+        if not self._node.get_parameter(USE_SIM_TIME).value:
+            return False
+        if self._subscription is None:
+            self._subscription = self._polled.subscribe(Clock, CLOCK_TOPIC, NEWEST)
+        if not self._subscription.get_publisher_count():
+            self._time_s = self._silent_since_s = None
+            return False
+        for raw, _ in self._polled.take(self._subscription, 1):
+            self._time_s = seconds(deserialize_message(raw, Clock).clock)
+        if self._time_s is not None:
+            return abs(self._time_s - stamp_s) < within_s
+        if self._silent_since_s is None:
+            self._silent_since_s = now_s
+        return now_s - self._silent_since_s >= SILENCE_S

@@ -4,7 +4,7 @@ import logging
 import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 from moveit_msgs.msg import AttachedCollisionObject, PlanningSceneWorld
 from moveit_msgs.msg import CollisionObject as ObjectMessage
@@ -16,6 +16,7 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 from arm_node.rigid_transform import RigidTransform
+from arm_planning.collision.model import CollisionModel
 from arm_planning.errors import PlanningError
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.answering import offer_service
@@ -24,13 +25,13 @@ from arm_planning.ros.convert_scene import frames_in, scene_change_of
 from arm_planning.ros.joint_state_monitor import JointStateMonitor
 from arm_planning.ros.scene_messages import scene_message
 from arm_planning.ros.transform_reader import TransformReader
-from arm_planning.ros.usable_meshes import without_unusable
 from arm_planning.ros.world_objects import WorldObjects
 from arm_planning.scene.frames import LinkPoses, frame_names
-from arm_planning.scene.objects import CollisionObject
+from arm_planning.scene.objects import AttachedBody, CollisionObject
 from arm_planning.scene.occupancy_map import OccupancyMap
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import SceneOutcome, change_scene
+from arm_planning.scene.shapes import TriangleMesh
 from arm_planning.scene.world_things import followed
 
 SERVICES_DEPTH = 10
@@ -39,6 +40,8 @@ PUBLISH_HZ = 4.0
 MOVED = 1e-6
 """Change of a joint from which the state is published again, rad or m."""
 LOGGER = logging.getLogger("move_group")
+
+ThingT = TypeVar("ThingT", CollisionObject, AttachedBody)
 
 
 class SceneMonitor:
@@ -228,3 +231,59 @@ def _has_moved(before: PlanningScene, after: PlanningScene) -> bool:
         abs(position - before.positions.get(joint, position + 1.0)) > MOVED
         for joint, position in after.positions.items()
     )
+
+
+def without_unusable(
+    model: PlanningModel, before: PlanningScene, after: PlanningScene
+) -> tuple[PlanningScene, list[PlanningError]]:
+    """Return a changed scene in which objects with unusable meshes are as before, and the reasons.
+
+    Collision checks cannot use them, so each plan would fail.
+
+    Args:
+        model: the robot.
+        before: the scene before the change, whose meshes are usable.
+        after: the scene after it.
+    """
+    known = {id(mesh) for thing in _things(before) for mesh in _meshes(thing)}
+    new = [
+        thing for thing in _things(after) if any(id(mesh) not in known for mesh in _meshes(thing))
+    ]
+    if not new or _why_unusable(model, after, new) is None:
+        return after, []
+    problems = {thing.id: _why_unusable(model, after, [thing]) for thing in new}
+    unusable = {name: problem for name, problem in problems.items() if problem is not None}
+    kept = replace(
+        after,
+        objects=_as_before(before.objects, after.objects, unusable),
+        attached=_as_before(before.attached, after.attached, unusable),
+    )
+    return kept, list(unusable.values())
+
+
+def _things(scene: PlanningScene) -> list[CollisionObject]:
+    return [*scene.objects.values(), *(body.object for body in scene.attached.values())]
+
+
+def _meshes(thing: CollisionObject) -> list[TriangleMesh]:
+    shapes = (placed.shape for placed in thing.shapes)
+    return [shape for shape in shapes if isinstance(shape, TriangleMesh)]
+
+
+def _why_unusable(
+    model: PlanningModel, scene: PlanningScene, things: Iterable[CollisionObject]
+) -> PlanningError | None:
+    alone = PlanningScene(scene.positions, objects={thing.id: thing for thing in things})
+    try:
+        CollisionModel(model, alone)
+    except PlanningError as error:
+        return error
+    return None
+
+
+def _as_before(
+    before: Mapping[str, ThingT], after: Mapping[str, ThingT], names: Iterable[str]
+) -> dict[str, ThingT]:
+    unusable = set(names)
+    restored = {name: thing for name, thing in before.items() if name in unusable}
+    return {name: thing for name, thing in after.items() if name not in unusable} | restored

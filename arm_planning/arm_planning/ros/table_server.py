@@ -2,29 +2,35 @@
 
 import logging
 from collections.abc import Callable
+from functools import partial
 from math import inf
 from typing import Any
 
+import numpy as np
 from moveit_msgs.msg import PlanningSceneWorld
 from mycobot_interfaces.srv import GetPlanningScene
+from numpy.typing import NDArray
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Image, PointCloud2
+from std_msgs.msg import Header, String
 
+from arm_description.errors import DescriptionError
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_planning.collision.seen_robot import PADDING_M
-from arm_planning.errors import PerceptionError
+from arm_planning.collision.seen_robot import PADDING_M, SeenRobot
+from arm_planning.errors import PerceptionError, PlanningError
 from arm_planning.perception.table_objects import Crop, TableTarget, objects_in_view
 from arm_planning.ros.answering import offer_service
 from arm_planning.ros.point_clouds import points_of
-from arm_planning.ros.robot_in_view import TOPIC, RobotInView
 from arm_planning.ros.scene_messages import object_message
 from arm_planning.ros.transform_reader import TransformReader
 
 SERVICE = "get_planning_scene_mycobot"
 POLL_S, SENSORS_S = 0.02, 5.0
 """How often and how long it waits for a camera that has only just been subscribed to."""
+DESCRIPTION_TOPIC = "robot_description"
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 LOGGER = logging.getLogger("get_planning_scene_server")
 
@@ -66,7 +72,7 @@ class TableServer:
                 f"robot_padding is {padding_m} m; it is not negative and below 1 m"
             )
         self._transforms = TransformReader(node)
-        self._robot = RobotInView(node, self._transforms, padding_m)
+        self._robot = _RobotInView(node, self._transforms, padding_m)
         self._without_robot = False
         offer_service(node, GetPlanningScene, SERVICE, self._serve)
 
@@ -117,7 +123,7 @@ class TableServer:
                     self._latest[kind] = deserialize_message(raw, kind)
             is_late = waited_s >= SENSORS_S
             if not self._robot.is_heard() and is_late and not self._without_robot:
-                LOGGER.warning("nobody publishes %s: the robot is not cut out", TOPIC)
+                LOGGER.warning("nobody publishes %s: the robot is not cut out", DESCRIPTION_TOPIC)
                 self._without_robot = True
             if len(self._latest) == 2 and (self._without_robot or self._robot.is_heard()):
                 return self._latest[PointCloud2], self._latest[Image]
@@ -156,3 +162,44 @@ def _text(node: Node, name: str, value: str) -> str:
 def _number(node: Node, name: str, value: float) -> float:
     given: Any = node.declare_parameter(name, value).value
     return float(given)
+
+
+class _RobotInView:
+    """Finds the robot of the topic robot_description where it was when a picture was taken.
+
+    Args:
+        node: has the subscription.
+        transforms: say where the links were.
+        padding_m: by which each shape of a link is grown.
+    """
+
+    def __init__(self, node: Node, transforms: TransformReader, padding_m: float) -> None:
+        self._transforms, self._padding_m = transforms, padding_m
+        self._polled = PolledSubscriptions(node)
+        self._description = self._polled.subscribe(String, DESCRIPTION_TOPIC, LATCHED)
+        self._robot: SeenRobot | None = None
+        self._is_heard = False
+
+    def is_heard(self) -> bool:
+        """Return whether there has been a description; a new one is taken."""
+        for raw, _ in self._polled.take(self._description, 1):
+            self._is_heard = True
+            message: String = deserialize_message(raw, String)
+            try:
+                self._robot = SeenRobot(message.data, self._padding_m)
+            except (DescriptionError, PlanningError) as error:
+                LOGGER.error("the robot is not cut out of what is seen: %s", error)
+                self._robot = None
+        return self._is_heard
+
+    def pixels(self, header: Header, points: NDArray[np.float32]) -> NDArray[np.bool_] | None:
+        """Return which points (height, width, 3) show the robot, (height, width); None if unknown.
+
+        Args:
+            header: frame and time of the points.
+            points: in m.
+        """
+        if self._robot is None:
+            return None
+        pose_of = partial(self._transforms.pose, base=header.frame_id, stamp=header.stamp)
+        return self._robot.pixels(points, pose_of)

@@ -16,9 +16,9 @@ from arm_planning.constraints.constraints import (
     OrientationConstraint,
     OrientationError,
     PositionConstraint,
+    snap_to_limits,
 )
 from arm_planning.constraints.evaluation import ConstraintEvaluator, euler_error, rotation_vector
-from arm_planning.constraints.joint_goals import snap_to_limits
 from arm_planning.robot.model import JointGroup, PlanningLimits, PlanningModel
 from arm_planning.scene.objects import PlacedShape
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -12,7 +13,6 @@ from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
 from arm_planning.planners.pilz.even_cubics import even_cubics
-from arm_planning.planners.pilz.trapezoid import Trapezoid
 from arm_planning.planners.pose_line import PoseLine
 from arm_planning.robot.model import JointGroup, PlanningLimits
 from arm_planning.timing import stepped_motion
@@ -89,7 +89,7 @@ def tip_motion(
         rest = np.zeros((1, len(start)))
         return TimedTrajectory(group.joints, np.zeros(1), np.array([start]), rest, rest.copy())
     followed = _Followed(name, curve, kinematics, start)
-    speed = Trapezoid(
+    speed = _Trapezoid(
         length,
         velocity_scaling * limits.max_trans_vel,
         acceleration_scaling * limits.max_trans_acc,
@@ -152,6 +152,45 @@ def checked(
     if fault:
         raise PlanningError(MoveItErrorCode.PLANNING_FAILED, f"{name}: {fault}")
     return trajectory
+
+
+@dataclass(frozen=True, slots=True)
+class _Trapezoid:
+    """From rest to rest along a path, as fast as the limits allow: accelerate, cruise, brake.
+
+    Attributes:
+        length: how far it goes, above 0.
+        velocity: largest speed, above 0.
+        acceleration: above 0.
+        deceleration: above 0.
+    """
+
+    length: float
+    velocity: float
+    acceleration: float
+    deceleration: float
+
+    @property
+    def peak(self) -> float:
+        """The largest speed that it reaches."""
+        both = 1.0 / self.acceleration + 1.0 / self.deceleration
+        return min(self.velocity, math.sqrt(2.0 * self.length / both))
+
+    @property
+    def duration_s(self) -> float:
+        """How long it takes."""
+        ramps = self.peak / self.acceleration + self.peak / self.deceleration
+        return self.length / self.peak + 0.5 * ramps
+
+    def distance(self, times_s: Array) -> Array:
+        """Return how far it has gone at times from 0 to its duration."""
+        up, down = self.peak / self.acceleration, self.peak / self.deceleration
+        left = self.duration_s - times_s
+        rising = 0.5 * self.acceleration * times_s**2
+        falling = self.length - 0.5 * self.deceleration * left**2
+        even = self.peak * (times_s - 0.5 * up)
+        gone = np.where(times_s < up, rising, np.where(left < down, falling, even))
+        return np.clip(gone, 0.0, self.length)
 
 
 class _Followed:

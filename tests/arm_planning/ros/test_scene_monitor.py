@@ -7,7 +7,7 @@ import pytest
 from planar_robot import planar_model
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.ros.usable_meshes import without_unusable
+from arm_planning.ros.scene_monitor import without_unusable
 from arm_planning.scene.objects import AttachedBody, CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.shapes import TriangleMesh
