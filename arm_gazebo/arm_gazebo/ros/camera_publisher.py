@@ -11,8 +11,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2, PointField
 
 from arm_gazebo.camera.depth_image import CHANNELS, PointGrid
-from arm_gazebo.camera.pipeline import CameraPipeline
-from arm_gazebo.camera.statistics import CameraReport
+from arm_gazebo.camera.pipeline import CameraPipeline, CameraReport
 from arm_gazebo.ros.topic import QOS, set_stamp, watched
 from arm_gazebo.sensors.camera import CameraSensor
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from arm_gazebo.camera.statistics import CameraStatistics
+from arm_gazebo.camera.pipeline import CameraStatistics
 from arm_gazebo.feed.schedule import FrameDue
 
 
