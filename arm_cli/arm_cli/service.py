@@ -6,12 +6,11 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from arm_cli.arguments import JSON, Argument, Flag, positive_number, verb
-from arm_cli.errors import CommandUsageError, UnansweredError
+from arm_cli.errors import UnansweredError
 from arm_cli.interface_types import InterfaceIndex, load_class
 from arm_cli.output import complain, print_json, say_document
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
-from arm_node.names import describe_known
 
 if TYPE_CHECKING:
     from arm_cli.ros.session import CommandSession
@@ -50,8 +49,12 @@ def call(options: argparse.Namespace) -> None:
     for note in filled.notes:
         complain(f"arm service call: {note}")
     with connect() as session:
+        from arm_cli.ros.graph import Graph
+
         client = session.node.create_client(class_, session.full_name(options.service_name))
-        _wait_for_server(session, client, type_.full_name, options.timeout)
+        Graph(session).wait_for_server(
+            "service", client.srv_name, type_.full_name, client.service_is_ready, options.timeout
+        )
         session.be_known_to_server(client.srv_name)
         while True:
             start_s = time.monotonic()
@@ -78,29 +81,6 @@ def _answer(session: "CommandSession", client: Any, request: Any, timeout_s: flo
     if answer is None:
         raise UnansweredError(f"no answer from {name} within {timeout_s:g} s")
     return answer
-
-
-def _wait_for_server(
-    session: "CommandSession", client: Any, type_name: str, timeout_s: float | None
-) -> None:
-    from arm_cli.ros.graph import Graph
-
-    graph = Graph(session)
-    name = client.srv_name
-
-    def ready() -> bool:
-        offered = graph.offered_types(name)
-        if offered and type_name not in offered:
-            raise CommandUsageError(f"{name} is a {', '.join(offered)}, not a {type_name}")
-        return client.service_is_ready()
-
-    def notice() -> str:
-        near = describe_known(name, [known for known in graph.services() if known != name])
-        hint = f"; {near}" if near.startswith("did") else ""
-        return f"waiting for service to become available... {name}{hint}"
-
-    if not session.wait_until(ready, notice, timeout_s):
-        raise UnansweredError(f"service {name} has no server (waited {timeout_s:g} s)")
 
 
 EVENTS = "_service_event"

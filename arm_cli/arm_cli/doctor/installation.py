@@ -1,6 +1,5 @@
 """Checks of the installation and the machine: from Python and the wheels to free resources."""
 
-import fcntl
 import os
 import platform
 import re
@@ -12,6 +11,7 @@ import sysconfig
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from http.client import HTTPConnection, HTTPException
 from importlib.metadata import Distribution
@@ -20,6 +20,7 @@ from pathlib import Path
 from arm_cli.doctor.diagnosis import Diagnosis
 from arm_cli.names import this_domain
 from arm_node.ros_distribution import ros_distribution
+from launch_py.fast_dds.shared_memory import lock_files, lock_names, locked_segments
 
 TIMEOUT_S = 60.0
 OLDEST, NEWEST = (3, 11), (3, 13)
@@ -297,8 +298,6 @@ ROOMY_BYTES = 128 << 20
 """Below this, cameras use smaller buffers. Docker's default is 64 MiB."""
 LEAST_AGE_S = 30.0
 """Younger segments are ignored, because a process locks its segment a moment after creating it."""
-LOCKS, LOCK_SUFFIX = ("fastrtps_*_el", "fastdds_*_el"), "_el"
-"""Those of Fast DDS 2, and of 3."""
 HOST, PORT = "127.0.0.1", 8080
 HTTP_TIMEOUT_S = 2.0
 OWNER_HEADER = "Arm-Suite-Page"
@@ -342,25 +341,15 @@ def _judge_space(folder: Path, free_bytes: int, abandoned: list[str]) -> Diagnos
 
 
 def _abandoned_segments(folder: Path) -> list[str]:
-    locks = sorted(path for pattern in LOCKS for path in folder.glob(pattern))
-    return [lock.name.removesuffix(LOCK_SUFFIX) for lock in locks if _is_abandoned(lock)]
+    """Return the segments that no process owns."""
+    free = lock_files(str(folder)).keys() - locked_segments(str(folder))
+    return sorted(s for s in free if any(_is_old(folder / name) for name in lock_names(s)))
 
 
-def _is_abandoned(lock: Path) -> bool:
-    """Return whether no process holds the lock of a segment; its owner does while it runs."""
-    try:
-        if time.time() - lock.stat().st_mtime < LEAST_AGE_S:
-            return False
-        descriptor = os.open(lock, os.O_RDONLY)
-    except OSError:
-        return False
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except OSError:
-        return False
-    finally:
-        os.close(descriptor)
-    return True
+def _is_old(lock: Path) -> bool:
+    with suppress(OSError):
+        return time.time() - lock.stat().st_mtime >= LEAST_AGE_S
+    return False
 
 
 def check_page_port(port: int = PORT) -> Diagnosis:

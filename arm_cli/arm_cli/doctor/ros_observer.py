@@ -23,7 +23,7 @@ from arm_cli.doctor.observation import (
 )
 from arm_cli.errors import UnansweredError
 from arm_cli.interface_types import InterfaceIndex, load_class
-from arm_cli.ros.controller_manager import manager_client
+from arm_cli.ros.controller_manager import MARK, manager_client, manager_names
 from arm_cli.ros.graph import Graph, NodeName
 from arm_cli.ros.listeners import ClockListener
 from arm_cli.ros.parameters import NodeParameters
@@ -181,8 +181,6 @@ WINDOW_S = 1.0
 FIRST_MESSAGE_S = 3.0
 ANSWER_TIMEOUT_S = 5.0
 """A node that takes longer is considered stuck."""
-LIST_CONTROLLERS = "/list_controllers"
-LIST_TYPE = "controller_manager_msgs/srv/ListControllers"
 CLOCK = "/clock"
 DESCRIPTION, DESCRIPTION_TYPE = "robot_description", "std_msgs/msg/String"
 STATES, STATES_TYPE = "joint_states", "sensor_msgs/msg/JointState"
@@ -194,7 +192,11 @@ def observe(session: CommandSession) -> GraphObservation:
     """Discover the graph, query the managers and listen to the topics."""
     graph = Graph(session)
     graph.settle()
-    managers = tuple(_ask(session, name) for name in _manager_names(graph))
+    managers = tuple(
+        _ask(session, name)
+        for name in manager_names(session)
+        if graph.server_count(f"{name}{MARK}")
+    )
     topics = graph.topics()
     clock = ClockListener(session)
     descriptions = [
@@ -251,14 +253,6 @@ def _named(topics: Mapping[str, list[str]], name: str, type_name: str) -> list[s
         topic
         for topic, types in topics.items()
         if topic.rpartition("/")[2] == name and types == [type_name]
-    ]
-
-
-def _manager_names(graph: Graph) -> list[str]:
-    return [
-        name.removesuffix(LIST_CONTROLLERS)
-        for name, types in graph.services().items()
-        if name.endswith(LIST_CONTROLLERS) and LIST_TYPE in types and graph.server_count(name)
     ]
 
 

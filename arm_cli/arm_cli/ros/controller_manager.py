@@ -61,13 +61,13 @@ class _SessionCaller:
         """
         wanted, name = self._manager, f"{self._manager}/{service}"
         if not self._session.wait_until(
-            lambda: bool(managers(self._session)),
+            lambda: bool(manager_names(self._session)),
             lambda: f"waiting for service {name}",
             SERVER_TIMEOUT_S,
         ):
             raise UnansweredError(f"service {name} has no server (waited {SERVER_TIMEOUT_S:g} s)")
-        self._session.wait_until(lambda: wanted in managers(self._session), timeout_s=OTHERS_S)
-        found = managers(self._session)
+        self._session.wait_until(lambda: wanted in manager_names(self._session), timeout_s=OTHERS_S)
+        found = manager_names(self._session)
         if wanted in found:
             return wanted
         if len(found) > 1:
@@ -82,7 +82,7 @@ class _SessionCaller:
         return self.query(service, request)
 
 
-def managers(session: CommandSession) -> list[str]:
+def manager_names(session: CommandSession) -> list[str]:
     """Return the absolute names of the controller managers that are discovered, sorted."""
     services = session.node.get_service_names_and_types()
     return sorted(

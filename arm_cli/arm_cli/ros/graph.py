@@ -16,7 +16,7 @@ from typing import TypeVar
 from rclpy.node import NodeNameNonExistentError
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from arm_cli.errors import NoSuchNameError
+from arm_cli.errors import CommandUsageError, NoSuchNameError, UnansweredError
 from arm_cli.names import absolute_name, is_hidden, this_domain
 from arm_cli.ros.session import CommandSession
 from arm_node.names import describe_known
@@ -170,14 +170,6 @@ class Graph:
         """Return the number of a service's servers."""
         return self._node.count_services(service)
 
-    def offered_types(self, service: str) -> list[str]:
-        """Return the types with which other nodes offer a service."""
-        return self._offered(self.served_by, service)
-
-    def offered_action_types(self, action: str) -> list[str]:
-        """Return the types with which other nodes offer an action."""
-        return self._offered(self.action_servers_of, action)
-
     def published_by(self, node: NodeName) -> Types:
         """Return the topics that a node publishes."""
         return self._by_node(self._node.get_publisher_names_and_types_by_node, node)
@@ -261,13 +253,49 @@ class Graph:
             f"no {what} {name!r} on {this_domain()}; {describe_known(name, known)}"
         )
 
+    def wait_for_server(
+        self,
+        what: str,
+        name: str,
+        type_name: str,
+        is_ready: Callable[[], bool],
+        timeout_s: float | None,
+    ) -> None:
+        """Wait until a service or an action has a server.
+
+        Args:
+            what: "service" or "action".
+            name: its absolute name.
+            type_name: the type that the server must have.
+            is_ready: tells whether the client sees a server.
+            timeout_s: how long to wait at most; None waits for ever.
+
+        Raises:
+            CommandUsageError: its servers have another type.
+            UnansweredError: it has no server before the timeout.
+        """
+        is_action = what == "action"
+        served_by = self.action_servers_of if is_action else self.served_by
+
+        def ready() -> bool:
+            found = (served_by(node).get(name, []) for node in self.nodes(hidden=True))
+            offered = sorted({type_ for types in found for type_ in types})
+            if offered and type_name not in offered:
+                raise CommandUsageError(f"{name} is a {', '.join(offered)}, not a {type_name}")
+            return is_ready()
+
+        def notice() -> str:
+            known = self.actions() if is_action else self.services()
+            near = describe_known(name, [other for other in known if other != name])
+            hint = f"; {near}" if near.startswith("did") else ""
+            return f"waiting for {what} to become available... {name}{hint}"
+
+        if not self._session.wait_until(ready, notice, timeout_s):
+            raise UnansweredError(f"{what} {name} has no server (waited {timeout_s:g} s)")
+
     def _others(self, infos: list[TopicEndpointInfo]) -> list[TopicEndpointInfo]:
         own = self._own
         return [i for i in infos if NodeName(i.node_namespace, i.node_name).full_name != own]
-
-    def _offered(self, offers: Callable[[NodeName], Types], name: str) -> list[str]:
-        found = (offers(node).get(name, []) for node in self.nodes(hidden=True))
-        return sorted({type_ for types in found for type_ in types})
 
     def _by_node(
         self, ask: Callable[[str, str], list[tuple[str, list[str]]]], node: NodeName

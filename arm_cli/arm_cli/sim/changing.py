@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from arm_cli.arguments import Argument, Exclusive, Flag, verb
-from arm_cli.errors import CommandUsageError
+from arm_cli.arguments import Argument, Exclusive, Flag, positive_number, verb
+from arm_cli.errors import CommandUsageError, SimulationRefusedError
 from arm_cli.output import say
 from arm_cli.sim.simulation import NAMESPACE, PAUSED, PLAYING, ask_simulation
 
@@ -175,27 +175,17 @@ ROUNDING = 1e-6
 """A time this close to the end of a control period, as a fraction of the period, is that end."""
 
 
-def _seconds(text: str) -> float:
-    try:
-        seconds = float(text)
-    except ValueError:
-        seconds = math.nan
-    if not 0.0 < seconds < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number of seconds above 0")
-    return seconds
-
-
 @verb(
     Argument("count", nargs="?", type=int, help="number of control periods (default 1)"),
     Exclusive(
         Argument(
             "--seconds",
-            type=_seconds,
+            type=positive_number,
             help="advance by this much simulation time, rounded up to a whole control period",
         ),
         Argument(
             "--until",
-            type=_seconds,
+            type=positive_number,
             metavar="TIME",
             help="advance to the first control period that ends at or after this simulation time",
         ),
@@ -213,8 +203,6 @@ def step(options: argparse.Namespace) -> None:
 
 
 def _check(options: argparse.Namespace) -> None:
-    from arm_cli.errors import CommandUsageError
-
     if options.count is None:
         return
     if options.count < 1:
@@ -235,8 +223,6 @@ def _steps(options: argparse.Namespace, simulation: "SimulationClient") -> int:
     assert end_s is not None
     steps = math.ceil((end_s - now_s) / period_s - ROUNDING)
     if steps < 1:
-        from arm_cli.errors import SimulationRefusedError
-
         raise SimulationRefusedError(
             f"the simulation is already at {now_s:.3f} s, past {end_s:g} s"
         )

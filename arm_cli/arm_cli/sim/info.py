@@ -4,6 +4,7 @@ import argparse
 from typing import Any
 
 from arm_cli.arguments import JSON, verb
+from arm_cli.errors import SimulationRefusedError
 from arm_cli.output import print_json, say
 from arm_cli.sim.simulation import NAMESPACE, STATE_NAMES, SimulationClient, ask_simulation
 
@@ -72,8 +73,6 @@ def _report(simulation: SimulationClient) -> dict[str, Any]:
 
 def _world(simulation: SimulationClient) -> tuple[str, str]:
     """Return the world's name and description, which says what the simulation leaves out."""
-    from arm_cli.errors import SimulationRefusedError
-
     try:
         world = simulation.ask("GetCurrentWorld", "get_current_world").world
     except SimulationRefusedError:

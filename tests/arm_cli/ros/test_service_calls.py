@@ -41,6 +41,9 @@ class Session:
     def create_client(self, *_):
         return self
 
+    def service_is_ready(self):
+        return True
+
     def get_clock(self):
         return self
 
@@ -70,7 +73,8 @@ def test_now_in_a_request_is_the_time_of_each_call(monkeypatch):
         yield session
 
     monkeypatch.setattr(service, "connect", connect)
-    monkeypatch.setattr(service, "_wait_for_server", lambda *_: None)
+    there = SimpleNamespace(wait_for_server=lambda *_: None)
+    monkeypatch.setattr(graph, "Graph", lambda _session: there)
     words = ["/x", "control_msgs/srv/QueryTrajectoryState", "time: now", "-r", "9"]
     with pytest.raises(Stop):
         service.call.run(parsed(service.call, *words))
