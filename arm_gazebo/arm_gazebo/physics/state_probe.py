@@ -32,6 +32,25 @@ WITHOUT_SENSORS = int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
 WITH_SLEEP = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 
 
+def evaluate_all(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    *functions: Callable[[mujoco.MjModel, mujoco.MjData], None],
+) -> None:
+    """Call MuJoCo's functions with sensors, and for sleeping bodies, too. The model's thread.
+
+    MuJoCo does not recompute sleeping bodies. But they may have moved since the last call, and
+    arrays that were made while a step hid shapes have no poses of those yet.
+    """
+    options = model.opt
+    disabled, enabled = options.disableflags, options.enableflags
+    options.disableflags = disabled & ~WITHOUT_SENSORS
+    options.enableflags = enabled & ~WITH_SLEEP
+    for function in functions:
+        function(model, data)
+    options.disableflags, options.enableflags = disabled, enabled
+
+
 class StateProbe:
     """A second set of MuJoCo's arrays, updated to the present state on request. Loop thread.
 
@@ -68,7 +87,7 @@ class StateProbe:
         if self._observed != self.number:
             self._observed = self._posed = self.number
             mujoco.mj_copyState(model, data, self._data, EVERYTHING)
-            self._evaluate(mujoco.mj_forward, model)
+            evaluate_all(model, self._data, mujoco.mj_forward)
         return self._data
 
     def poses(self, model: mujoco.MjModel, data: mujoco.MjData) -> mujoco.MjData:
@@ -81,21 +100,10 @@ class StateProbe:
             self._posed, probe = self.number, self._data
             probe.qpos[:] = data.qpos
             probe.mocap_pos[:], probe.mocap_quat[:] = data.mocap_pos, data.mocap_quat
-            self._evaluate(mujoco.mj_kinematics, model)
+            evaluate_all(model, self._data, mujoco.mj_kinematics)
         return self._data
 
     def _use(self, model: mujoco.MjModel) -> None:
         if self._model is not model:
             self._model, self._data = model, mujoco.MjData(model)
             self._observed = self._posed = -1
-
-    def _evaluate(
-        self, function: Callable[[mujoco.MjModel, mujoco.MjData], None], model: mujoco.MjModel
-    ) -> None:
-        options = model.opt
-        disabled, enabled = options.disableflags, options.enableflags
-        options.disableflags = disabled & ~WITHOUT_SENSORS
-        # MuJoCo does not recompute sleeping bodies, which may have moved since the last call.
-        options.enableflags = enabled & ~WITH_SLEEP
-        function(model, self._data)
-        options.disableflags, options.enableflags = disabled, enabled

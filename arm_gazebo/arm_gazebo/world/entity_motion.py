@@ -8,7 +8,7 @@ import re2
 from numpy.typing import NDArray
 
 from arm_gazebo.errors import Refusal, RequestError
-from arm_gazebo.physics.state_probe import WorldState
+from arm_gazebo.physics.state_probe import WorldState, evaluate_all
 from arm_gazebo.world.changes import Matrix
 from arm_gazebo.world.entity import Category, Entities, WorldEntity
 
@@ -37,6 +37,8 @@ class EntityMotion:
 class EntityMotions:
     """Computes on its own copy of the state and never touches the running simulation. One thread.
 
+    But for `take`, which belongs to the thread that steps the model.
+
     Args:
         model: the model, which is not modified.
     """
@@ -47,14 +49,13 @@ class EntityMotions:
         self._time_s = 0.0
 
     def take(self, state: WorldState) -> None:
-        """Use this state of the same model from now on."""
+        """Use this state of the same model from now on. The model's thread, between two steps."""
         data = self._data
         self._time_s = state.time_s
         data.qpos[:], data.qvel[:] = state.qpos, state.qvel
         data.mocap_pos[:], data.mocap_quat[:] = state.mocap_pos, state.mocap_quat
-        mujoco.mj_kinematics(self._model, data)
-        mujoco.mj_comPos(self._model, data)
-        mujoco.mj_comVel(self._model, data)
+        steps = mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_comVel
+        evaluate_all(self._model, data, *steps)
 
     @property
     def geom_poses(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
