@@ -15,6 +15,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from arm_cli.errors import ArmCliError
+from arm_gazebo.build_report import shown
 from arm_node.printable import printable, printable_message
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def _as_text(check: "CheckResult[Any]") -> str:
         printable(f"package '{name}': {place.folder} ({place.origin})")
         for name, place in _places(check)
     ]
-    for finding in check.findings:
+    for finding in shown(check.findings):
         indented = printable_message(str(finding)).replace("\n", f"\n{'':{width + 4}}")
         lines.append(f"  {finding.outcome.value:<{width}}  {indented}")
     total = ", ".join(_counted(count, word) for word, count in counts.items()) or "no findings"

@@ -1,11 +1,15 @@
 """The report to the user: what the model builder repaired, dropped or left out."""
 
 import logging
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from enum import Enum
 
 MAX_NAMED = 5
 """How many kinds of missing things one line names; the log names all of them."""
+
+MAX_ALIKE = 3
+"""How many findings with one message are shown one by one; of more, the first with their number."""
 
 
 class BuildOutcome(Enum):
@@ -58,6 +62,21 @@ class Finding:
     def __str__(self) -> str:
         where = f"{self.element} (line {self.line})" if self.line else self.element
         return f"{where}: {self.message}"
+
+
+def shown(findings: Iterable[Finding]) -> Iterator[Finding]:
+    """Yield findings to show in their order, many alike as one: a hand may have 24 bad links."""
+    groups: dict[tuple[BuildOutcome, str, str], list[Finding]] = {}
+    for finding in findings:
+        kind = finding.element.partition("'")[0]
+        groups.setdefault((finding.outcome, kind, finding.message), []).append(finding)
+    for group in groups.values():
+        if len(group) <= MAX_ALIKE:
+            yield from group
+        else:
+            count = sum(finding.count for finding in group)
+            name = f"{group[0].element} and {len(group) - 1} more"
+            yield replace(group[0], element=name, count=count)
 
 
 class BuildReport:
@@ -113,6 +132,6 @@ class BuildReport:
         self.add(Finding(BuildOutcome.DOUBTFUL, element, message, line))
 
     def log(self, logger: logging.Logger) -> None:
-        """Log every finding at its level."""
-        for finding in self._findings:
+        """Log the findings at their levels, many alike as one."""
+        for finding in shown(self._findings):
             logger.log(finding.outcome.level, "%s", finding)

@@ -8,6 +8,7 @@ from typing import Protocol, TypeVar
 import mujoco
 import numpy as np
 
+from arm_gazebo.build_report import shown
 from arm_gazebo.errors import GazeboError, Refusal, RequestError, WorldError
 from arm_gazebo.feed.state_feed import PreparedModel
 from arm_gazebo.model.built_model import BuiltModel
@@ -185,7 +186,7 @@ class WorldEditor:
         pose = self.in_world(request.pose, request.frame)
         model = self.source.read(request.uri, request.text)
         name = self._entities.name_for(request.name, request.allow_renaming, model.root)
-        for finding in model.findings:
+        for finding in shown(model.findings):
             logger.log(finding.outcome.level, "entity '%s': %s", name, finding)
         self._change(self._changes.with_spawned(Spawned(name, model, pose)))
         return name
