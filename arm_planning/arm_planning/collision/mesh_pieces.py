@@ -210,7 +210,8 @@ def convex_hull(points: Array) -> Hull:
     spec.add_mesh(
         name="hull",
         uservert=points.ravel(),
-        userface=np.array([0, 1, 2], np.int32),
+        # The hull is of the points; but MuJoCo refuses a mesh whose triangles have no area.
+        userface=_wide_triangle(points),
         inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
     )
     spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="hull")
@@ -237,6 +238,15 @@ def convex_hull(points: Array) -> Hull:
     normals[inwards] *= -1.0
     heights[inwards] *= -1.0
     return Hull(corners, normals, heights)
+
+
+def _wide_triangle(points: Array) -> NDArray[np.int32]:
+    """Return the indices of three points that are far apart and not in a line."""
+    first = points - points[0]
+    second = int(np.einsum("ij,ij->i", first, first).argmax())
+    beside = np.cross(first, first[second])
+    third = int(np.einsum("ij,ij->i", beside, beside).argmax())
+    return np.array([0, second, third], np.int32)
 
 
 def thickened(points: Array) -> Array:

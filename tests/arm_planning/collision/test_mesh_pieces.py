@@ -99,6 +99,16 @@ def test_a_hull_has_the_outer_corners_only():
     assert sorted(map(tuple, np.round(found, 6))) == sorted(map(tuple, CORNERS))
 
 
+@pytest.mark.parametrize("size", [1.0, 1e-4])
+@pytest.mark.parametrize("place", [(0.0, 0.5, 1.0), (0.0, 0.0, 0.0)])
+def test_a_hull_does_not_care_which_points_come_first(place, size):
+    # Corners in a line, or at one place, as files with a point for each corner of a triangle begin.
+    beginning = np.array([[x, 0.0, 0.0] for x in place])
+    corners = hull(size * np.concatenate([beginning, CORNERS]))
+    assert np.ptp(corners, axis=0) == pytest.approx([size] * 3, rel=1e-4)
+    assert len(corners) == len(CORNERS)
+
+
 def test_a_flat_mesh_is_a_plate():
     square = TriangleMesh(CORNERS[:4].copy(), np.array([[0, 1, 3], [0, 3, 2]]))
     model = probe(square)
