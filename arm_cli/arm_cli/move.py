@@ -52,6 +52,7 @@ EXTRA_TIME_S = 5.0
         "--time", type=positive_number, default=5.0, metavar="SECONDS", help="time to plan in"
     ),
     Flag("--plan-only", help="plan, and do not move"),
+    Argument("-n", "--namespace", default="/", metavar="NS", help="namespace of move_group"),
     JSON,
 )
 def move(options: argparse.Namespace) -> None:
@@ -67,7 +68,7 @@ def move(options: argparse.Namespace) -> None:
     with connect(packages=PLANNING_PACKAGES) as session:
         from arm_cli.ros.move_group import MoveGroupClient
 
-        client = MoveGroupClient(session)
+        client = MoveGroupClient(session, options.namespace)
         model = client.model()
         group = _group(model, options.group)
         timeout_s = options.time + EXTRA_TIME_S if options.plan_only else None

@@ -75,8 +75,12 @@ def call(options: argparse.Namespace) -> None:
 
 def _answer(session: "CommandSession", client: Any, request: Any, timeout_s: float | None) -> Any:
     name = client.srv_name
-    answer = session.result(
-        client.call_async(request), timeout_s, lambda: f"waiting for the answer of {name}..."
+    answer = session.answer(
+        client.call_async(request),
+        name,
+        client.service_is_ready,
+        timeout_s,
+        lambda: f"waiting for the answer of {name}...",
     )
     if answer is None:
         raise UnansweredError(f"no answer from {name} within {timeout_s:g} s")

@@ -52,6 +52,7 @@ def move_group(context: LaunchContext) -> list[Action]:
     }
     if place := numbers(words.get("pose", "")):
         own["pose_in_world"] = place
+    above = in_root(words.get("namespace", ""))
     return [
         Node(
             package="arm_planning",
@@ -62,8 +63,10 @@ def move_group(context: LaunchContext) -> list[Action]:
         ),
         ReadyPanel(
             title="Motion planning is up",
-            topics=[("/move_action", "moveit_msgs/action/MoveGroup, as MoveIt's move_group")],
-            commands=[("move", "arm move --help")],
+            topics=[
+                (f"{above}/move_action", "moveit_msgs/action/MoveGroup, as MoveIt's move_group")
+            ],
+            commands=[("move", f"arm move -n {above} --help" if above else "arm move --help")],
         ),
         *(servo(words, {**configured, **robot}) if words["servo"] == "true" else ()),
     ]
@@ -84,6 +87,7 @@ def servo(words: Mapping[str, str], robot: Mapping[str, Any]) -> list[Action]:
             configured = servo_parameters(Path(words["servo_config"]).expanduser())
         except PlanningError as error:
             raise UsageError(f"servo_config:={words['servo_config']}: {error}") from error
+    above = in_root(words.get("namespace", ""))
     return [
         Node(
             package="arm_planning",
@@ -95,12 +99,17 @@ def servo(words: Mapping[str, str], robot: Mapping[str, Any]) -> list[Action]:
         ReadyPanel(
             title="The jog is up",
             topics=[
-                ("/servo_node/delta_twist_cmds", "geometry_msgs/msg/TwistStamped"),
-                ("/servo_node/delta_joint_cmds", "control_msgs/msg/JointJog"),
-                ("/servo_node/status", "moveit_msgs/msg/ServoStatus"),
+                (f"{above}/servo_node/delta_twist_cmds", "geometry_msgs/msg/TwistStamped"),
+                (f"{above}/servo_node/delta_joint_cmds", "control_msgs/msg/JointJog"),
+                (f"{above}/servo_node/status", "moveit_msgs/msg/ServoStatus"),
             ],
         ),
     ]
+
+
+def in_root(namespace: str) -> str:
+    """Return a namespace as names on the graph begin: "/left", or "" for none."""
+    return f"/{namespace.strip('/')}".rstrip("/")
 
 
 def numbers(text: str) -> list[float]:
@@ -129,6 +138,9 @@ def generate_launch_description() -> LaunchDescription:
     """Return the node and its arguments."""
     return LaunchDescription(
         [
+            DeclareLaunchArgument(
+                "namespace", default_value="", description="namespace of the nodes and the robot"
+            ),
             DeclareLaunchArgument(
                 "moveit_config",
                 default_value="",

@@ -133,8 +133,8 @@ class GoalSender:
         """Send a goal, wait for its result and print both; a signal or the timeout cancels it.
 
         Raises:
-            UnansweredError: the server does not answer, does not cancel the goal, or has no result
-                before the timeout.
+            UnansweredError: the server does not answer, ends, does not cancel the goal, or has no
+                result before the timeout.
             StoppedError: a signal arrived, and the goal was cancelled.
         """
         goal.stamp(self._session.node.get_clock().now().to_msg())
@@ -154,8 +154,8 @@ class GoalSender:
     def _wait_for_result(self, sent: Future, timeout_s: float | None) -> bool:
         """Print the progress and result of a goal; return whether it ended before the timeout."""
         start_s = time.monotonic()
-        handle: ClientGoalHandle | None = self._session.result(
-            sent, timeout_s, lambda: f"waiting for {self.name} to accept the goal..."
+        handle: ClientGoalHandle | None = self._answer(
+            sent, timeout_s, f"waiting for {self.name} to accept the goal..."
         )
         if handle is None:
             return False
@@ -165,8 +165,8 @@ class GoalSender:
             return True
         say_document(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
         left_s = None if timeout_s is None else timeout_s - (time.monotonic() - start_s)
-        answer = self._session.result(
-            handle.get_result_async(), left_s, lambda: f"waiting for the result of {self.name}..."
+        answer = self._answer(
+            handle.get_result_async(), left_s, f"waiting for the result of {self.name}..."
         )
         if answer is None:
             return False
@@ -175,6 +175,10 @@ class GoalSender:
         if answer.status == GoalStatus.STATUS_ABORTED and not _has_reason(answer.result):
             self._explain()
         return True
+
+    def _answer(self, future: Future, timeout_s: float | None, waiting_for: str) -> Any:
+        is_there = self._client.server_is_ready
+        return self._session.answer(future, self.name, is_there, timeout_s, lambda: waiting_for)
 
     def _explain(self) -> None:
         """Print why the goal failed, if its server logs that."""

@@ -1,6 +1,6 @@
 """Asks a running move_group: for its robot, and to move it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -12,6 +12,8 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
 from arm_cli.errors import MotionFailedError, StoppedError, UnansweredError
+from arm_cli.names import absolute_name
+from arm_cli.ros.graph import Graph
 from arm_cli.ros.session import CommandSession
 from arm_description.urdf.parser import parse_urdf
 from arm_planning.robot.build import planning_model
@@ -20,14 +22,15 @@ from arm_planning.robot.srdf import parse_srdf
 
 TIMEOUT_S = 5.0
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-URDF, SRDF = "/robot_description", "/robot_description_semantic"
+URDF, SRDF = "robot_description", "robot_description_semantic"
 
 
 class MoveGroupClient:
-    """Asks move_group with the node of this command."""
+    """Asks the move_group in a namespace with the node of this command."""
 
-    def __init__(self, session: CommandSession) -> None:
+    def __init__(self, session: CommandSession, namespace: str) -> None:
         self._session = session
+        self._namespace = absolute_name(namespace).rstrip("/")
 
     def model(self) -> PlanningModel:
         """Return the running robot with its groups and named states.
@@ -38,16 +41,29 @@ class MoveGroupClient:
         texts: dict[str, str] = {}
         for topic in (SRDF, URDF):
             take = partial(_keep, texts, topic)
-            self._session.node.create_subscription(String, topic, take, LATCHED)
+            name = self._session.full_name(self._name(topic))
+            self._session.node.create_subscription(String, name, take, LATCHED)
         if not self._session.wait_until(lambda: len(texts) == 2, timeout_s=TIMEOUT_S):
-            missing = " and ".join(topic for topic in (SRDF, URDF) if topic not in texts)
-            raise UnansweredError(
-                f"nobody publishes {missing}: start the robot with planning:=true, as in "
-                "`arm launch mycobot planning:=true`"
-            )
+            missing = [self._name(topic) for topic in (SRDF, URDF) if topic not in texts]
+            raise UnansweredError(f"nobody publishes {' and '.join(missing)}: {self._advice()}")
         robot = parse_urdf(texts[URDF])
         # The limits do not matter here, so neither do remarks about them.
         return planning_model(robot, parse_srdf(texts[SRDF], robot), warn=lambda _: None)
+
+    def _name(self, name: str) -> str:
+        return f"{self._namespace}/{name}"
+
+    def _advice(self) -> str:
+        """Return where planning runs, or how to start it."""
+        topics = Graph(self._session).topics()
+        others = [
+            topic.removesuffix(SRDF).rstrip("/") or "/"
+            for topic in sorted(topics)
+            if topic.endswith(f"/{SRDF}") and topic != self._name(SRDF)
+        ]
+        if others:
+            return f"there is a robot with planning in -n {' or '.join(others)}"
+        return "start the robot with planning:=true, as in `arm launch mycobot planning:=true`"
 
     def positions(self, joints: Sequence[str]) -> dict[str, float]:
         """Return where joints are now, rad or m.
@@ -61,10 +77,11 @@ class MoveGroupClient:
             known.update(zip(message.name, message.position, strict=False))
 
         qos = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
-        self._session.node.create_subscription(JointState, "/joint_states", take, qos)
+        topic = self._name("joint_states")
+        self._session.node.create_subscription(JointState, topic, take, qos)
         if not self._session.wait_until(lambda: known.keys() >= set(joints), timeout_s=TIMEOUT_S):
             missing = ", ".join(joint for joint in joints if joint not in known)
-            raise UnansweredError(f"/joint_states has no position of {missing}")
+            raise UnansweredError(f"{topic} has no position of {missing}")
         return {joint: known[joint] for joint in joints}
 
     def move(self, goal: MoveGroup.Goal, timeout_s: float | None) -> MoveGroup.Result:
@@ -75,28 +92,35 @@ class MoveGroupClient:
             timeout_s: how long to wait for the result; None for as long as it takes.
 
         Raises:
-            UnansweredError: no move_group runs, or it does not answer.
+            UnansweredError: no move_group runs, or it does not answer, or ends first.
             MotionFailedError: there is no plan, or the robot did not get there.
         """
-        client = ActionClient(self._session.node, MoveGroup, "/move_action")
+        client = ActionClient(self._session.node, MoveGroup, self._name("move_action"))
         if not self._session.wait_until(client.server_is_ready, timeout_s=TIMEOUT_S):
             raise UnansweredError("no move_group runs: start the robot with planning:=true")
         handle = self._session.result(client.send_goal_async(goal), TIMEOUT_S)
         if handle is None or not handle.accepted:
             raise UnansweredError("move_group did not take the goal")
-        answer = self._answer(handle, timeout_s)
+        answer = self._answer(handle, client.server_is_ready, timeout_s)
         code = answer.error_code
         if code.val != MoveItErrorCodes.SUCCESS:
             raise MotionFailedError(code.message or f"move_group failed with code {code.val}")
         return answer
 
-    def _answer(self, handle: Any, timeout_s: float | None) -> MoveGroup.Result:
+    def _answer(
+        self, handle: Any, is_there: Callable[[], bool], timeout_s: float | None
+    ) -> MoveGroup.Result:
+        future, action = handle.get_result_async(), self._name("move_action")
         try:
-            answer = self._session.result(handle.get_result_async(), timeout_s)
+            answer = self._session.answer(future, action, is_there, timeout_s)
         except StoppedError:
             self._session.clear_stop()
             self._session.result(handle.cancel_goal_async(), TIMEOUT_S)
             raise
+        except UnansweredError as error:
+            raise UnansweredError(
+                f"{error}; a motion that began goes on, `arm stop` ends it"
+            ) from None
         if answer is None:
             raise UnansweredError(f"move_group has no result after {timeout_s:g} s")
         return answer.result

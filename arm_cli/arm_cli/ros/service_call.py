@@ -24,25 +24,18 @@ def call_service(
     An answer timeout of None waits as long as the service has a server.
 
     Raises:
-        UnansweredError: the service has no server, or the server does not answer.
+        UnansweredError: the service has no server, or the server does not answer, or ends first.
     """
     client = session.node.create_client(service_class, session.full_name(name))
     try:
         wait_for_server(session, client, server_timeout_s)
         future = client.call_async(request)
-        session.wait_until(
-            lambda: future.done() or (answer_timeout_s is None and not client.service_is_ready()),
-            timeout_s=answer_timeout_s,
-        )
+        answer = session.answer(future, name, client.service_is_ready, answer_timeout_s)
     finally:
         session.node.destroy_client(client)
-    if not future.done():
-        raise UnansweredError(
-            f"no answer from {name}: its server has ended"
-            if answer_timeout_s is None
-            else f"no answer from {name} within {answer_timeout_s:g} s"
-        )
-    return future.result()
+    if answer is None:
+        raise UnansweredError(f"no answer from {name} within {answer_timeout_s:g} s")
+    return answer
 
 
 def wait_for_server(session: CommandSession, client: Client, timeout_s: float | None) -> None:

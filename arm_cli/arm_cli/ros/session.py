@@ -26,7 +26,7 @@ from rclpy.task import Future
 from rclpy.utilities import try_shutdown
 from rclpy.validate_full_topic_name import validate_full_topic_name
 
-from arm_cli.errors import CommandUsageError, StoppedError
+from arm_cli.errors import CommandUsageError, StoppedError, UnansweredError
 from arm_cli.names import absolute_name
 from arm_cli.output import complain
 from arm_node.printable import first_line
@@ -39,6 +39,8 @@ KNOWN_TIMEOUT_S = 3.0
 NOTICE_AFTER_S = 1.0
 """After this time of waiting, the user is told what the command waits for."""
 ACKNOWLEDGE_TIMEOUT_S = 1.0
+LAST_ANSWER_S = 0.5
+"""The last answer of a server that has ended may still be on its way for so long."""
 
 
 class CommandSession:
@@ -176,6 +178,34 @@ class CommandSession:
             StoppedError: a signal arrived.
         """
         self.wait_until(future.done, waiting_for, timeout_s)
+        return future.result() if future.done() else None
+
+    def answer(
+        self,
+        future: Future,
+        server: str,
+        is_there: Callable[[], bool],
+        timeout_s: float | None = None,
+        waiting_for: Callable[[], str] | None = None,
+    ) -> Any:
+        """Return the answer of a server, or None if there is none before the timeout.
+
+        Args:
+            future: a future that this node's executor completes with the answer.
+            server: the name of the service or action, for messages.
+            is_there: returns whether it has a server.
+            timeout_s: None waits as long as there is a server.
+            waiting_for: returns a notice, printed on stderr after a second; None prints nothing.
+
+        Raises:
+            UnansweredError: the server has ended.
+            StoppedError: a signal arrived.
+        """
+        self.wait_until(lambda: future.done() or not is_there(), waiting_for, timeout_s)
+        if not future.done() and not is_there():
+            self.wait_until(future.done, timeout_s=LAST_ANSWER_S)
+            if not future.done():
+                raise UnansweredError(f"no answer from {server}: its server has ended")
         return future.result() if future.done() else None
 
 

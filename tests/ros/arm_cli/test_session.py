@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import pytest
+from rclpy.task import Future
 
-from arm_cli.errors import CommandUsageError, StoppedError
+from arm_cli.errors import CommandUsageError, StoppedError, UnansweredError
 from arm_cli.names import absolute_name
 from arm_cli.ros import session as session_module
 from arm_cli.ros.session import ACKNOWLEDGE_TIMEOUT_S, open_session
@@ -121,3 +122,26 @@ def test_the_node_s_end_is_limited_in_time(error, code, monkeypatch):
         if error is not None:
             raise error
     assert calls == [code, "cancelled"]
+
+
+def test_a_command_without_a_time_limit_ends_with_the_server_that_it_waits_for():
+    there = iter([True, True])
+    with (
+        open_session() as session,
+        pytest.raises(UnansweredError, match=r"^no answer from /grip: its server has ended$"),
+    ):
+        session.answer(Future(), "/grip", lambda: next(there, False))
+    assert next(there, None) is None
+
+
+def test_the_last_answer_of_a_server_that_has_ended_counts():
+    future = Future()
+    answers = iter([None, "done"])
+
+    def is_there() -> bool:
+        if answer := next(answers, None):
+            future.set_result(answer)
+        return False
+
+    with open_session() as session:
+        assert session.answer(future, "/grip", is_there) == "done"

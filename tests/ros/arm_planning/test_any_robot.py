@@ -1,5 +1,6 @@
 """Motion planning for a robot of which there is only a URDF: no controllers, no SRDF, no pose."""
 
+import signal
 import sys
 from contextlib import closing
 from pathlib import Path
@@ -41,6 +42,24 @@ def test_arm_move_plans_and_moves_it(launch, client, urdf):
         return dict(zip(last.name, last.position, strict=True)) == pytest.approx(wanted, abs=0.01)
 
     states.wait_until(are_there, f"the joints at {wanted}")
+
+
+def test_arm_move_finds_the_robot_in_its_namespace_and_ends_with_its_move_group(
+    launch, client, urdf
+):
+    from sensor_msgs.msg import JointState
+
+    launched = launch(str(urdf), "planning:=true", "namespace:=left")
+    launched.wait_until_ready()
+    states = client.subscribe(JointState, "/left/joint_states")
+    words = [sys.executable, "-m", "arm_cli", "move", "--joints", "j1=1.0", "--speed", "0.02"]
+    with closing(Program(words)) as program:
+        assert program.fail().endswith("there is a robot with planning in -n /left")
+    with closing(Program([*words, "-n", "left"])) as program:
+        states.wait_until(lambda heard: heard and max(heard[-1].velocity) > 0.01, "a motion")
+        (move_group,) = launched.processes("'move_group'")
+        move_group.send_signal(signal.SIGKILL)
+        assert "no answer from /left/move_action: its server has ended" in program.fail()
 
 
 def test_arm_move_says_that_a_robot_without_joints_has_nothing_to_move(launch, tmp_path):
