@@ -3,48 +3,48 @@
 It imports no ROS. The nodes robot_state_publisher and joint_state_publisher are in `publishers`.
 """
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from arm_description.errors import (
-    DescriptionError,
-    JointStateError,
-    KinematicsError,
-    MeshFileError,
-    MimicCycleError,
-    ResourceNotFoundError,
-    SettingsError,
-    UrdfError,
-    XacroError,
-    XmlError,
-)
-from arm_description.resources import ResourceFinder, resolve_uri
-from arm_description.urdf.joint_type import JointType
-from arm_description.urdf.parser import parse_urdf
-from arm_description.urdf.robot import (
-    Box,
-    Capsule,
-    Collision,
-    Cylinder,
-    Dynamics,
-    Geometry,
-    Inertial,
-    Joint,
-    JointLimit,
-    Link,
-    Material,
-    Mesh,
-    Mimic,
-    Pose,
-    Robot,
-    SafetyLimits,
-    Sphere,
-    Visual,
-)
-from arm_description.urdf.xml_document import parse_xml
-from arm_description.xacro.expansion import expand_xacro
-
 if TYPE_CHECKING:
+    from arm_description.errors import (
+        DescriptionError,
+        JointStateError,
+        KinematicsError,
+        MeshFileError,
+        MimicCycleError,
+        ResourceNotFoundError,
+        SettingsError,
+        UrdfError,
+        XacroError,
+        XmlError,
+    )
     from arm_description.kinematics.forward import forward_kinematics
+    from arm_description.resources import ResourceFinder, resolve_uri
+    from arm_description.urdf.joint_type import JointType
+    from arm_description.urdf.parser import parse_urdf
+    from arm_description.urdf.robot import (
+        Box,
+        Capsule,
+        Collision,
+        Cylinder,
+        Dynamics,
+        Geometry,
+        Inertial,
+        Joint,
+        JointLimit,
+        Link,
+        Material,
+        Mesh,
+        Mimic,
+        Pose,
+        Robot,
+        SafetyLimits,
+        Sphere,
+        Visual,
+    )
+    from arm_description.urdf.xml_document import parse_xml
+    from arm_description.xacro.expansion import expand_xacro
 
 __all__ = [
     "Box",
@@ -84,11 +84,58 @@ __all__ = [
     "resolve_uri",
 ]
 
+_EXPORTS = {
+    "errors": (
+        "DescriptionError",
+        "JointStateError",
+        "KinematicsError",
+        "MeshFileError",
+        "MimicCycleError",
+        "ResourceNotFoundError",
+        "SettingsError",
+        "UrdfError",
+        "XacroError",
+        "XmlError",
+    ),
+    "kinematics.forward": ("forward_kinematics",),
+    "resources": ("ResourceFinder", "resolve_uri"),
+    "urdf.joint_type": ("JointType",),
+    "urdf.parser": ("parse_urdf",),
+    "urdf.robot": (
+        "Box",
+        "Capsule",
+        "Collision",
+        "Cylinder",
+        "Dynamics",
+        "Geometry",
+        "Inertial",
+        "Joint",
+        "JointLimit",
+        "Link",
+        "Material",
+        "Mesh",
+        "Mimic",
+        "Pose",
+        "Robot",
+        "SafetyLimits",
+        "Sphere",
+        "Visual",
+    ),
+    "urdf.xml_document": ("parse_xml",),
+    "xacro.expansion": ("expand_xacro",),
+}
+_MODULE_OF = {name: module for module, names in _EXPORTS.items() for name in names}
+
 
 def __getattr__(name: str) -> Any:
-    # Imported on first use: reading a description, as the launcher does, needs no NumPy.
-    if name != "forward_kinematics":
+    # A public name is imported on first use: the launcher only expands a xacro file, and the parser
+    # of URDF, with lxml, takes a tenth as long as the whole launcher.
+    if name not in _MODULE_OF:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    from arm_description.kinematics.forward import forward_kinematics
+    value = getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
+    globals()[name] = value
+    return value
 
-    return forward_kinematics
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 from urllib.parse import unquote
 
 from arm_description.errors import ResourceNotFoundError
@@ -20,10 +20,12 @@ from arm_description.package_search import (
     model_folders,
 )
 from arm_description.urdf.description_source import source_of
-from arm_description.urdf.robot import Collision, Mesh, Robot, Visual
+
+if TYPE_CHECKING:
+    from arm_description.urdf.robot import Collision, Robot, Visual
 
 SCHEMES = ("package://", "model://", "file://")
-ShapeT = TypeVar("ShapeT", Visual, Collision)
+ShapeT = TypeVar("ShapeT", "Visual", "Collision")
 
 
 class ResourceFinder:
@@ -107,7 +109,7 @@ class ResourceFinder:
             tried[place.folder] = None
         raise ResourceNotFoundError(f"no package '{name}'; tried {', '.join(map(str, tried))}")
 
-    def located(self, robot: Robot) -> Robot:
+    def located(self, robot: "Robot") -> "Robot":
         """Return the robot with absolute paths for its meshes; those not found stay unchanged."""
         return replace(
             robot,
@@ -122,6 +124,9 @@ class ResourceFinder:
         )
 
     def _located(self, shape: ShapeT) -> ShapeT:
+        # Imported here, because xacro, and so the launcher, finds files without it.
+        from arm_description.urdf.robot import Mesh
+
         mesh = shape.geometry
         if not isinstance(mesh, Mesh):
             return shape

@@ -15,8 +15,8 @@ def as_slice(indices: Sequence[int] | NDArray[np.intp]) -> slice | NDArray[np.in
     indices = np.asarray(indices, dtype=np.intp)
     if len(indices) == 0:
         return slice(0, 0)
-    steps = np.unique(np.diff(indices))
-    if len(steps) > 1 or (len(steps) == 1 and steps[0] < 1):
-        return indices
+    steps = np.diff(indices)
     step = int(steps[0]) if len(steps) else 1
+    if step < 1 or (steps != step).any():
+        return indices
     return slice(int(indices[0]), int(indices[-1]) + 1, step)

@@ -180,6 +180,9 @@ def run_process(
     # Objects made at the start stay alive: collecting them repeatedly would cost start-up time, and
     # later cause a pause in the middle of a control period.
     gc.disable()
+    # NumPy's library for linear algebra would start a thread for each processor, and let them spin
+    # between its first tasks. A robot's matrices are too small for more than one.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # Before the imports below, which take some tenths of a second, so that Ctrl-C works now.
     with _signals_set(StopEvent()) as stop:
         try:

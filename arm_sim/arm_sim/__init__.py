@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from arm_node.collection import collection_paused
+
 if TYPE_CHECKING:
     from arm_gazebo.world.contacts import Contact
     from arm_sim.cameras import Camera
@@ -60,7 +62,7 @@ def __getattr__(name: str) -> Any:
     # A public name is imported on first use: importing all of them takes as long as a start.
     if name not in _MODULE_OF:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    with _without_window_library():
+    with _without_window_library(), collection_paused():
         value = getattr(import_module(_MODULE_OF[name]), name)
     globals()[name] = value
     return value

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from arm_node.collection import collection_paused
 from arm_sim.arguments import SimulationArguments, takes, with_settings
 from arm_sim.controllers import ControllerHandle, Controllers
 from arm_sim.errors import CallError, GoalError
@@ -79,26 +80,27 @@ class Simulation:
             RecordingError: the recording cannot be written.
             ParameterValueError: another argument is wrong.
         """
-        # Imported here, because it takes long, and a program may never build a simulation.
-        from arm_sim.set_up import set_up
+        with collection_paused():
+            # Imported here, because it takes long, and a program may never build a simulation.
+            from arm_sim.set_up import set_up
 
-        setup = set_up(arguments)
-        for remark in setup.remarks:
-            logger.info("%s", remark)
-        if setup.left_out:
-            warn_caller(setup.left_out)
-        self.parts, starter = setup.build()
-        self._physics, self._tick = self.parts.physics, self.parts.tick
-        self._render_backend = setup.settings.render_backend
-        self._moveit_config = setup.moveit_config
-        self._ending = ExitStack()
-        self._closed = False
-        self.joints = Joints(self._physics)
-        self.parts.holders.append(self.joints)
-        self.states = States(self.parts.robot.manager.resources)
-        self.sensors = Sensors(self.parts.sensors)
-        self.controllers = Controllers(self.parts.robot.manager, starter)
-        self._start(arguments.record)
+            setup = set_up(arguments)
+            for remark in setup.remarks:
+                logger.info("%s", remark)
+            if setup.left_out:
+                warn_caller(setup.left_out)
+            self.parts, starter = setup.build()
+            self._physics, self._tick = self.parts.physics, self.parts.tick
+            self._render_backend = setup.settings.render_backend
+            self._moveit_config = setup.moveit_config
+            self._ending = ExitStack()
+            self._closed = False
+            self.joints = Joints(self._physics)
+            self.parts.holders.append(self.joints)
+            self.states = States(self.parts.robot.manager.resources)
+            self.sensors = Sensors(self.parts.sensors)
+            self.controllers = Controllers(self.parts.robot.manager, starter)
+            self._start(arguments.record)
 
     def _start(self, record: AnyPath | None) -> None:
         """Begin the recording, then start the controllers."""

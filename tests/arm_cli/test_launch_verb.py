@@ -156,11 +156,11 @@ def test_a_near_short_name_is_offered(capsys):
     assert capsys.readouterr().err.rstrip().endswith("did you mean 'mycobot'?")
 
 
-def test_the_launcher_reads_a_robot_without_numpy_and_rclpy():
+def test_the_launcher_reads_a_robot_without_numpy_lxml_and_rclpy():
     code = (
         "import sys\nsys.argv = ['arm', 'launch', '--print']\nfrom arm_cli.main import run\n"
         "try:\n    run()\nexcept SystemExit:\n    pass\n"
-        "print(sorted({'numpy', 'rclpy', 'mujoco'} & sys.modules.keys()), file=sys.stderr)"
+        "print(sorted({'lxml', 'numpy', 'rclpy', 'mujoco'} & sys.modules.keys()), file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert "robot_state_publisher" in done.stdout

@@ -25,3 +25,9 @@ def test_others_are_an_index_array(indices):
     found = as_slice(indices)
     assert isinstance(found, np.ndarray)
     assert found.tolist() == indices
+
+
+def test_far_apart_indices_take_no_memory_between_them():
+    found = as_slice([0, 1, 10**15])
+    assert isinstance(found, np.ndarray)
+    assert found.tolist() == [0, 1, 10**15]

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.controllers.sensor_broadcasters.controller import ReadingSink
+from arm_control.controllers.sensor_broadcasters.readings import ReadingSink
 from arm_control.hardware.info import HardwareInfo
 from arm_gazebo.feed.schedule import FrameSchedule, StreamCount
 from arm_gazebo.sensors.link_sensor import LinkSensor

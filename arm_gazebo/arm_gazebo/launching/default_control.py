@@ -10,10 +10,9 @@ from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from arm_description.urdf.robot import Robot
-
 if TYPE_CHECKING:
     from arm_control.hardware.info import HardwareInfo
+    from arm_description.urdf.robot import Robot
 
 BROADCASTER = "joint_state_broadcaster"
 COMMANDER = "position_controller"
@@ -58,12 +57,12 @@ def has_hardware(urdf: str) -> bool:
     return "<ros2_control" in _COMMENT.sub("", urdf)
 
 
-def commandable_joints(robot: Robot) -> tuple[str, ...]:
+def commandable_joints(robot: "Robot") -> tuple[str, ...]:
     """Return the joints that can be commanded independently, in document order."""
     return tuple(j.name for j in robot.joints if j.type.is_scalar and j.mimic is None)
 
 
-def hardware_joints(robot: Robot, hardware: "tuple[HardwareInfo, ...]") -> HardwareJoints:
+def hardware_joints(robot: "Robot", hardware: "tuple[HardwareInfo, ...]") -> HardwareJoints:
     """Return the joints of a robot by their hardware interfaces.
 
     Fixed joints, and commands to mimic joints, are left out; some blocks list them anyway.
@@ -86,7 +85,7 @@ def hardware_joints(robot: Robot, hardware: "tuple[HardwareInfo, ...]") -> Hardw
     )
 
 
-def with_hardware(urdf: str, robot: Robot) -> str:
+def with_hardware(urdf: str, robot: "Robot") -> str:
     """Return the description with a block that commands every joint that can be commanded.
 
     Mimic joints have state interfaces only. Line numbers of the text do not change.

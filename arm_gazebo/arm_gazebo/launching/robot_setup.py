@@ -4,10 +4,9 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from arm_description.resources import ResourceFinder
-from arm_description.urdf.description import RobotDescription
 from arm_description.xacro.expansion import XacroExpansion, arguments_of_text, expand_xacro_file
 from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.controllers_file import (
@@ -26,6 +25,9 @@ from arm_gazebo.launching.default_control import (
     has_hardware,
     with_hardware,
 )
+
+if TYPE_CHECKING:
+    from arm_description.urdf.description import RobotDescription
 
 SPAWN_AUTO = "auto"
 """Start every controller whose joints are not claimed yet."""
@@ -146,9 +148,11 @@ def folders(path: str) -> tuple[Path, ...]:
 
 def _completed(
     expansion: XacroExpansion, remarks: list[str]
-) -> tuple[RobotDescription, HardwareJoints]:
+) -> "tuple[RobotDescription, HardwareJoints]":
     """Return the description with hardware, and the joints by their interfaces."""
+    # Imported here, because a complete robot is not parsed by the launcher.
     from arm_control.hardware.info import parse_hardware_info
+    from arm_description.urdf.description import RobotDescription
     from arm_description.urdf.parser import ignore_remark, parse_urdf
 
     description = RobotDescription(expansion.text, expansion.source)
@@ -179,7 +183,7 @@ def _describe_defaults(joints: HardwareJoints, commander: str) -> str:
     return "; ".join(clauses)
 
 
-def gz_parameter_files(description: RobotDescription) -> list[str]:
+def gz_parameter_files(description: "RobotDescription") -> list[str]:
     """Return the parameter files that a description names for gz_ros2_control."""
     files = [named.content for named in description.root.find("gazebo/plugin/parameters")]
     return [file for file in files if os.path.isfile(file)]

@@ -2,16 +2,14 @@
 
 import contextlib
 import hashlib
+import io
 import logging
 import os
 import tempfile
-import zipfile
-import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from arm_description.errors import MeshFileError
 from arm_description.mesh.data import MeshData
@@ -19,16 +17,13 @@ from arm_gazebo.mesh.part import MeshPart
 
 logger = logging.getLogger(__name__)
 
-VERSION = "3"
+VERSION = "4"
 """Part of every key. Raise it when the same file is parsed to a different result."""
 MAX_CACHE_BYTES = 1_000_000_000
 """Limit on the size of all entries; the least recently used are deleted first."""
 
-# numpy raises any of these for a broken file.
-_READ_ERRORS = (
-    *(OSError, ValueError, TypeError, KeyError, EOFError, MeshFileError),
-    *(zipfile.BadZipFile, zlib.error, RuntimeError),
-)
+_DIGEST_BYTES = 24
+"""An entry begins with a digest of the rest of it, so that no damaged one is used."""
 
 
 def cache_folder(environ: Mapping[str, str] = os.environ) -> Path:
@@ -64,41 +59,42 @@ class MeshCache:
         """Return the parts stored under a key; None if there is no usable entry."""
         path = self._path(key)
         try:
-            with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
-                parts = tuple(_part(arrays, index) for index in range(int(arrays["count"])))
+            content = path.read_bytes()
+            if _digest(content[_DIGEST_BYTES:]) != content[:_DIGEST_BYTES]:
+                raise MeshFileError("it is damaged")
+            parts = _parts(io.BytesIO(content[_DIGEST_BYTES:]))
             for part in parts:
                 part.drawn.check()
             # The time of the last use decides which entry is deleted first.
             os.utime(path)
         except FileNotFoundError:
             return None
-        except _READ_ERRORS as error:
+        except (OSError, ValueError, EOFError, MeshFileError) as error:
             logger.debug("the cached mesh %s is not usable: %s", path, error)
             return None
         return parts or None
 
     def store(self, key: str, parts: Sequence[MeshPart]) -> None:
         """Store the parts under a key atomically: a reader sees the whole entry or nothing."""
-        arrays: dict[str, NDArray[np.generic]] = {"count": np.array(len(parts))}
-        for index, part in enumerate(parts):
-            arrays[f"vertices{index}"] = part.drawn.vertices
-            arrays[f"faces{index}"] = part.drawn.faces
-            arrays[f"hull{index}"] = part.hull
-            arrays[f"triangles{index}"] = np.array(part.triangles)
-            if part.drawn.rgba is not None:
-                arrays[f"rgba{index}"] = np.array(part.drawn.rgba)
+        file = io.BytesIO()
+        # One array after another: to read ten of them from a zip file takes five times as long.
+        np.save(file, len(parts))
+        for part in parts:
+            rgba = () if part.drawn.rgba is None else part.drawn.rgba
+            for array in (part.drawn.vertices, part.drawn.faces, part.hull, part.triangles, rgba):
+                np.save(file, array)
         try:
             self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-            self._write(key, arrays)
+            self._write(key, _digest(file.getvalue()) + file.getvalue())
             self._make_room()
         except OSError as error:
             logger.debug("cannot cache a mesh in %s: %s", self._folder, error)
 
-    def _write(self, key: str, arrays: Mapping[str, NDArray[np.generic]]) -> None:
+    def _write(self, key: str, content: bytes) -> None:
         handle, name = tempfile.mkstemp(dir=self._folder, suffix=".new")
         try:
             with os.fdopen(handle, "wb") as file:
-                np.savez(file, allow_pickle=False, **arrays)
+                file.write(content)
             os.replace(name, self._path(key))
         except BaseException:  # No exception may leave an incomplete file behind.
             os.unlink(name)
@@ -106,7 +102,7 @@ class MeshCache:
 
     def _make_room(self) -> None:
         entries = []
-        for file in self._folder.glob("*.npz"):
+        for file in self._folder.glob("*.np[yz]"):  # .npz: entries of earlier versions.
             with contextlib.suppress(FileNotFoundError):
                 status = file.stat()
                 entries.append((status.st_mtime, status.st_size, file))
@@ -118,15 +114,18 @@ class MeshCache:
             total -= size
 
     def _path(self, key: str) -> Path:
-        return self._folder / f"{key}.npz"
+        return self._folder / f"{key}.npy"
 
 
-def _part(arrays: Mapping[str, NDArray[np.generic]], index: int) -> MeshPart:
-    rgba = None
-    if f"rgba{index}" in arrays:
-        red, green, blue, alpha = np.asarray(arrays[f"rgba{index}"], np.float64).tolist()
-        rgba = (red, green, blue, alpha)
-    vertices = np.asarray(arrays[f"vertices{index}"], np.float64)
-    faces = np.asarray(arrays[f"faces{index}"], np.int32)
-    hull = np.asarray(arrays[f"hull{index}"], np.float64)
-    return MeshPart(MeshData(vertices, faces, rgba), hull, int(arrays[f"triangles{index}"]))
+def _digest(content: bytes) -> bytes:
+    return hashlib.blake2b(content, digest_size=_DIGEST_BYTES).digest()
+
+
+def _parts(file: io.BytesIO) -> tuple[MeshPart, ...]:
+    """Return the parts whose arrays are in a file, in the order of `store`."""
+    parts: list[MeshPart] = []
+    for _ in range(int(np.load(file))):
+        vertices, faces, hull, triangles, rgba = (np.load(file) for _ in range(5))
+        color = None if rgba.size == 0 else tuple(rgba.tolist())
+        parts.append(MeshPart(MeshData(vertices, faces, color), hull, int(triangles)))
+    return tuple(parts)

@@ -54,6 +54,7 @@ class MeshLibrary:
         self._spec = spec
         self._resources = resources
         self._cache = cache
+        self._paths: dict[str, Path] = {}
         self._parts: dict[Path, tuple[MeshPart, ...]] = {}
         self._unusable: dict[Path, str] = {}
         self._assets: dict[tuple[Path, Scale, Callable[..., str]], tuple[MeshAsset, ...]] = {}
@@ -147,10 +148,12 @@ class MeshLibrary:
         return name
 
     def _resolve(self, mesh: Mesh) -> Path:
-        try:
-            return self._resources.find(mesh.uri).resolve()
-        except ResourceNotFoundError as error:
-            raise MeshError(str(error)) from error
+        if mesh.uri not in self._paths:
+            try:
+                self._paths[mesh.uri] = self._resources.find(mesh.uri).resolve()
+            except ResourceNotFoundError as error:
+                raise MeshError(str(error)) from error
+        return self._paths[mesh.uri]
 
     def _read(self, path: Path) -> tuple[MeshPart, ...]:
         if path not in self._parts and path not in self._unusable:

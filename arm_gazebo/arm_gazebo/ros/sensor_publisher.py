@@ -8,7 +8,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from arm_control.controllers.ros_adapter import ReadingPublisher
-from arm_control.controllers.sensor_broadcasters.controller import ReadingSink
+from arm_control.controllers.sensor_broadcasters.readings import ReadingSink
 from arm_gazebo.ros.topic import message_class
 from arm_gazebo.sensors.link_sensor import LinkSensor, SensorTopic
 

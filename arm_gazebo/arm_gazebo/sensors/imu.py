@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_control.controllers.sensor_broadcasters.controller import IMU_INTERFACES
+from arm_control.controllers.sensor_broadcasters.readings import IMU_INTERFACES
 from arm_description.urdf.robot import Robot
 from arm_gazebo.sensors.link_sensor import LinkSensor, Measurement, SensorTopic
 from arm_gazebo.sensors.noise import SILENT, NoiseModel, read_noise

@@ -12,6 +12,7 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from launch_py.errors import NotFoundError, UnavailableError
@@ -335,13 +336,31 @@ class Packages:
     def _entry_points(self, group: str) -> Iterator[tuple[str, str]]:
         for folder in self._python_path:
             try:
-                names = os.listdir(folder or os.curdir)
+                changed_ns = os.stat(folder or os.curdir).st_mtime_ns
             except OSError:
                 continue
-            for name in names:
-                if name.endswith((".dist-info", ".egg-info")):
-                    path = os.path.join(folder, name, "entry_points.txt")
-                    yield from _read_entry_points(path, group)
+            for section, name, target in _entry_points_in(os.path.abspath(folder), changed_ns):
+                if section == group:
+                    yield name, target
+
+
+@cache
+def _entry_points_in(folder: str, _changed_ns: int) -> tuple[tuple[str, str, str], ...]:
+    """Return group, name and target of all entry points in a folder of Python's path.
+
+    A launch asks some dozen times, and there may be hundreds of files. Installing and removing a
+    distribution changes the folder, and so its time.
+    """
+    try:
+        names = os.listdir(folder)
+    except OSError:
+        return ()
+    files = (name for name in names if name.endswith((".dist-info", ".egg-info")))
+    return tuple(
+        found
+        for name in files
+        for found in _read_entry_points(os.path.join(folder, name, "entry_points.txt"))
+    )
 
 
 def _has_package(prefix: str, package: str) -> bool:
@@ -358,8 +377,8 @@ def _is_stand_in(prefix: str, package: str) -> bool:
         return False
 
 
-def _read_entry_points(path: str, group: str) -> Iterator[tuple[str, str]]:
-    """Yield names and targets of one group."""
+def _read_entry_points(path: str) -> Iterator[tuple[str, str, str]]:
+    """Yield group, name and target of each entry point in a file."""
     try:
         with open(path, encoding="utf-8") as file:
             lines = file.read().splitlines()
@@ -369,7 +388,7 @@ def _read_entry_points(path: str, group: str) -> Iterator[tuple[str, str]]:
     for line in lines:
         text = line.strip()
         if text.startswith("["):
-            section = text
-        elif section == f"[{group}]" and "=" in text and not text.startswith(("#", ";")):
+            section = text.strip("[]")
+        elif "=" in text and not text.startswith(("#", ";")):
             name, _, target = text.partition("=")
-            yield name.strip(), target.strip()
+            yield section, name.strip(), target.strip()

@@ -120,3 +120,12 @@ def test_a_distribution_may_replace_a_program(package_prefix, site):
     for program in ("expand", "/usr/bin/expand"):
         assert "from demo_nodes.expand import main; " in packages.stand_in(program)[3]
     assert packages.stand_in("echo") is None
+
+
+def test_a_distribution_that_is_installed_later_is_found(package_prefix, site, tmp_path):
+    packages = Packages(os.environ, [site])
+    assert packages.node_names("talk") == []
+    later = tmp_path / "site" / "later-1.0.dist-info"
+    later.mkdir()
+    (later / "entry_points.txt").write_text("[launch_py.nodes]\ntalk = talker\n")
+    assert packages.node_names("talk") == ["talker"]

@@ -11,7 +11,7 @@ from arm_control.controllers.controller import (
     InterfaceConfiguration,
     ReturnType,
 )
-from arm_control.controllers.sensor_broadcasters.controller import ReadingSink
+from arm_control.controllers.sensor_broadcasters.readings import ReadingSink
 from arm_control.errors import ControllerError
 from arm_control.parameters import parameter, parameter_groups
 from arm_control.run_inputs import run_input

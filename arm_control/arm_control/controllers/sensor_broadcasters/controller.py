@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,37 +13,15 @@ from arm_control.controllers.controller import (
     InterfaceConfiguration,
     ReturnType,
 )
+from arm_control.controllers.sensor_broadcasters.readings import (
+    FORCE_TORQUE_INTERFACES,
+    IMU_INTERFACES,
+    ReadingSink,
+)
 from arm_control.errors import ControllerError, ParameterError
 from arm_control.parameters import ParameterSpec, parameter
 
-IMU_INTERFACES = (
-    "orientation.x",
-    "orientation.y",
-    "orientation.z",
-    "orientation.w",
-    "angular_velocity.x",
-    "angular_velocity.y",
-    "angular_velocity.z",
-    "linear_acceleration.x",
-    "linear_acceleration.y",
-    "linear_acceleration.z",
-)
-FORCE_TORQUE_INTERFACES = ("force.x", "force.y", "force.z", "torque.x", "torque.y", "torque.z")
-
-
 ParametersT = TypeVar("ParametersT")
-
-
-class ReadingSink(Protocol):
-    """Receives the readings on the loop thread."""
-
-    def wanted(self) -> bool:
-        """Return whether there is a subscriber now."""
-        ...
-
-    def publish(self, time_s: float, reading: NDArray[np.float64]) -> None:
-        """Publish a reading, shape (n,), which is reused for the next one."""
-        ...
 
 
 class SensorBroadcaster(Controller[ParametersT]):
