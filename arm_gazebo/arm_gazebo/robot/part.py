@@ -320,8 +320,9 @@ def initial_positions(
 ) -> dict[str, float]:
     """Return the starting position of every joint with one degree of freedom, in rad or m.
 
-    It is the `initial_value` of the hardware's position interface, or else 0, clamped to the
-    joint's limits. A mimic joint starts where its leader puts it.
+    It is the `initial_value` of the hardware's position interface, clamped to the joint's limits,
+    or else 0, clamped to its soft limits, too: nobody plans a motion from outside of them. A mimic
+    joint starts where its leader puts it.
     """
     given = _given_positions(hardware)
     positions = {
@@ -349,13 +350,26 @@ def _within_limits(joint: Joint, given: Mapping[str, float], report: BuildReport
     wanted = given.get(joint.name, 0.0)
     if joint.limit is None or joint.mimic is not None:
         return wanted
-    position = min(max(wanted, joint.limit.lower), joint.limit.upper)
+    lower, upper = joint.limit.lower, joint.limit.upper
+    position = min(max(wanted, lower), upper)
     if not math.isclose(position, wanted, abs_tol=1e-9):
         source = "its initial_value" if joint.name in given else "its zero"
         report.repair(
             f"joint '{joint.name}'",
-            f"{source} of {wanted:g} is outside its limits of {joint.limit.lower:g} and "
-            f"{joint.limit.upper:g}; it starts at {position:g}",
+            f"{source} of {wanted:g} is outside its limits of {lower:g} and {upper:g}; it starts "
+            f"at {position:g}",
             joint.line,
         )
-    return position
+    if joint.safety is None or joint.name in given:
+        return position
+    lower, upper = max(lower, joint.safety.soft_lower), min(upper, joint.safety.soft_upper)
+    within = min(max(position, lower), upper)
+    if lower > upper or math.isclose(within, position, abs_tol=1e-9):
+        return position
+    report.inform(
+        f"joint '{joint.name}'",
+        f"{position:g} is outside its soft limits of {lower:g} and {upper:g}; it starts at "
+        f"{within:g}",
+        joint.line,
+    )
+    return within

@@ -184,6 +184,33 @@ def test_an_initial_value_outside_the_limits_is_clamped_and_reported(parts):
     assert "its zero of 0 is outside its limits of -2 and -0.5" in warnings(built)[0]
 
 
+@pytest.mark.parametrize(
+    ("soft", "start"),
+    [
+        ("soft_lower_limit='-2' soft_upper_limit='-0.15'", -0.15),
+        ("soft_lower_limit='0.3'", 0.3),
+        ("soft_lower_limit='-1' soft_upper_limit='1'", 0.0),
+        ("soft_lower_limit='5' soft_upper_limit='6'", 0.0),
+    ],
+)
+def test_a_joint_starts_within_its_soft_limits(parts, soft, start):
+    safety = f"<safety_controller k_velocity='1' {soft}/></joint>"
+    urdf = parts.pendulum().replace("</joint>", safety, 1)
+    built = parts.build(urdf)
+    assert built.qpos[0] == start
+    said = f"0 is outside its soft limits of -2 and -0.15; it starts at {start:g}"
+    assert any(said in str(finding) for finding in built.report.findings) == (start == -0.15)
+
+
+def test_an_initial_value_outside_the_soft_limits_is_kept(parts):
+    safety = "<safety_controller k_velocity='1' soft_lower_limit='0.3'/></joint>"
+    urdf = parts.pendulum().replace("</joint>", safety, 1)
+    interface = '<state_interface name="position">'
+    kept = urdf.replace(interface, f'{interface}<param name="initial_value">0.1</param>')
+    assert kept != urdf
+    assert parts.build(kept).qpos[0] == 0.1
+
+
 def test_an_unknown_hardware_joint_is_left_out_and_reported(parts):
     urdf = parts.pendulum().replace(
         "</ros2_control>",
