@@ -57,9 +57,6 @@ class Session:
         assert self.known_to == [self.srv_name]
         self.sent.append(request.time)
 
-    def service_is_ready(self):
-        return True
-
     def answer(self, *_):
         return "an answer"
 
