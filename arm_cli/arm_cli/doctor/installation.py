@@ -61,7 +61,7 @@ INSTALL_COMPILERS = (
     "needed only to reinstall arm_interfaces; on Debian and Ubuntu: apt install gcc g++ python3-dev"
 )
 PYTHON_SOURCE = "#include <Python.h>\n"
-RENDERING_PROBE = "arm_gazebo.rendering.backend_probe"
+RENDERING_PROBE = "arm_gazebo.rendering.backend_selection"
 RAYCAST = "raycast"
 INSTALL_OPENGL = "apt install libegl1 libgl1-mesa-dri (or libosmesa6)"
 

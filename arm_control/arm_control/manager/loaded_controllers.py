@@ -210,6 +210,14 @@ class ManagedController:
         return controller if configured and isinstance(controller, ChainableController) else None
 
 
+def unknown_controller(name: str, action: str) -> str:
+    """Return the sentence of ros2_control for a controller that is not loaded."""
+    return (
+        f"Could not {action} controller with name '{name}' because no controller with this name "
+        "exists"
+    )
+
+
 class LoadedControllers(dict[str, ManagedController]):
     """The loaded controllers by name in the order of their loading, and who commands whom.
 
@@ -231,10 +239,8 @@ class LoadedControllers(dict[str, ManagedController]):
         """
         controller = self.get(name)
         if controller is None:
-            raise ControllerManagerError(
-                f"Could not {action} controller with name '{name}' because no controller with "
-                f"this name exists; loaded: {', '.join(self) or 'none'}"
-            )
+            loaded = ", ".join(self) or "none"
+            raise ControllerManagerError(f"{unknown_controller(name, action)}; loaded: {loaded}")
         return controller
 
     def active(self) -> list[ManagedController]:

@@ -8,7 +8,11 @@ from enum import IntEnum
 from arm_control.errors import ControllerManagerError
 from arm_control.hardware.resource_manager import ResourceManager
 from arm_control.lifecycle import LifecycleState
-from arm_control.manager.loaded_controllers import LoadedControllers, ManagedController
+from arm_control.manager.loaded_controllers import (
+    LoadedControllers,
+    ManagedController,
+    unknown_controller,
+)
 
 
 class Strictness(IntEnum):
@@ -124,10 +128,7 @@ class SwitchPlanner:
             if controller is not None:
                 known.append(controller)
                 continue
-            reason = (
-                f"Could not {action} controller with name '{name}' "
-                "because no controller with this name exists"
-            )
+            reason = unknown_controller(name, action)
             self._skip_or_refuse(reason, self._names())
             reasons.append(reason)
         if reasons and not known:

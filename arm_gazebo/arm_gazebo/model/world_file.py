@@ -90,13 +90,11 @@ def report_margins(spec: mujoco.MjSpec, file: str, report: BuildReport) -> None:
         both = [element for element in elements if element.margin > 0.0 and element.gap > 0.0]
         if not both:
             continue
-        first = both[0]
-        name = f" '{first.name}'" if first.name else ""
-        more = f" and {len(both) - 1} more" if len(both) > 1 else ""
-        before = first.margin - first.gap
+        margin = both[0].margin
+        before = margin - both[0].gap
         report.warn(
-            f"{kind}{name} of {file}{more}",
-            f"it pushes at {first.margin:g} m from its surface, the margin. Up to MuJoCo 3.8 it "
+            _named(kind, both, file),
+            f"it pushes at {margin:g} m from its surface, the margin. Up to MuJoCo 3.8 it "
             f"pushed at margin minus gap, {before:g} m: for that write margin='{before:g}'",
         )
 

@@ -1,10 +1,16 @@
-"""Choose the cameras' render backend: the first one that renders a test image."""
+"""Choose the cameras' render backend: the first one that renders a test image.
+
+`arm doctor` runs it as a child process, which renders one image. It prints the name of each backend
+before it tries it, so the last line names the backend that was used or that crashed the process.
+"""
 
 import logging
-from collections.abc import Callable, Iterable
+import sys
+from collections.abc import Callable, Iterable, Sequence
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from arm_gazebo.errors import BackendError, CameraError
 from arm_gazebo.rendering.gl_context import EglContext, GlContext, OsmesaContext
@@ -94,19 +100,21 @@ def open_renderer(
     raise CameraError("no render backend to try")
 
 
-def _test(renderer: Renderer) -> None:
-    """Render a red ball on black.
-
-    Raises:
-        BackendError: the ball is not visible.
-    """
+def ball_picture(renderer: Renderer) -> NDArray[np.uint8]:
+    """Return a red ball on black as the renderer draws it, shape (height, width, 3)."""
     model = mujoco.MjModel.from_xml_string(TEST_SCENE)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     picture = np.zeros((TEST_SENSOR.height, TEST_SENSOR.width, 3), np.uint8)
+    renderer.set_model(model)
+    renderer.render(data, TEST_SENSOR, picture)
+    return picture
+
+
+def _test(renderer: Renderer) -> None:
+    """Raise a BackendError if the ball of the test picture is not visible."""
     try:
-        renderer.set_model(model)
-        renderer.render(data, TEST_SENSOR, picture)
+        picture = ball_picture(renderer)
     except mujoco.FatalError as error:
         raise BackendError(f"{renderer.backend} does not draw: {error}") from error
     if int(picture.max()) - int(picture.min()) < MIN_CONTRAST:
@@ -120,3 +128,21 @@ def _warn(reasons: list[str]) -> None:
         "; ".join(reasons),
         FIX,
     )
+
+
+def main(excluded: Sequence[str]) -> int:
+    """Render an image with any backend except the excluded ones; return the exit code."""
+    width, height = TEST_SENSOR.width, TEST_SENSOR.height
+    renderer = open_renderer(backend_order("auto", excluded), width, height, on_try=_print_name)
+    picture = ball_picture(renderer)
+    renderer.close()
+    return 0 if picture.any() else 1
+
+
+def _print_name(backend: str) -> None:
+    sys.stdout.write(f"{backend}\n")
+    sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -90,7 +90,7 @@ def exclude_neighbour_contacts(
     """
     bodies = {model.body(name).id: name for name in links}
     jointed = set(jointed_pairs(model, sorted(bodies)))
-    depths = _overlapping_pairs(model, qpos, bodies)
+    depths = _deepest(_at_start(model, qpos), model, bodies, inside=True, beyond_m=0.0)
     overlapping = depths.keys() - jointed
     for first, second in sorted(jointed | overlapping):
         spec.add_exclude(bodyname1=bodies[first], bodyname2=bodies[second])
@@ -115,20 +115,12 @@ def jointed_pairs(model: mujoco.MjModel, bodies: Sequence[int]) -> Iterator[tupl
             yield first, second
 
 
-def _overlapping_pairs(
-    model: mujoco.MjModel, qpos: NDArray[np.float64], bodies: Container[int]
-) -> dict[tuple[int, int], float]:
-    """Return the bodies that overlap, and how deep in m."""
+def _at_start(model: mujoco.MjModel, qpos: NDArray[np.float64]) -> mujoco.MjData:
+    """Return the state with these positions, with its contacts."""
     data = mujoco.MjData(model)
     data.qpos[:] = qpos
     mujoco.mj_fwdPosition(model, data)
-    depths: dict[tuple[int, int], float] = {}
-    for index in range(data.ncon):
-        contact = data.contact[index]
-        first, second = sorted(int(model.geom_bodyid[geom]) for geom in contact.geom)
-        if first in bodies and second in bodies and contact.dist < 0:
-            depths[first, second] = max(depths.get((first, second), 0.0), -float(contact.dist))
-    return depths
+    return data
 
 
 PLANE = mujoco.mjtGeom.mjGEOM_PLANE
@@ -139,7 +131,7 @@ EVERY_LAYER = 1
 """The collision mask of all of a robot's shapes while they are checked against each other."""
 
 Depths = dict[tuple[int, int], float]
-"""Deepest overlap in m of two bodies, the robot's first."""
+"""Deepest overlap in m of two bodies: the robot's first, or of two such the smaller number."""
 
 
 def report_overlaps(
@@ -161,9 +153,7 @@ def report_overlaps(
         advice: what to do if the robot starts below the floor.
     """
     names = {body: name for name, body in links.items() if body}
-    data = mujoco.MjData(model)
-    data.qpos[:] = qpos
-    mujoco.mj_fwdPosition(model, data)
+    data = _at_start(model, qpos)
     sunk: dict[int, float] = {}
     for (body, other), depth in _deepest(data, model, names, inside=False).items():
         if _is_floor(model, other):
@@ -203,16 +193,20 @@ def _millimetres(depth_m: float) -> str:
 
 
 def _deepest(
-    data: mujoco.MjData, model: mujoco.MjModel, names: Mapping[int, str], inside: bool
+    data: mujoco.MjData,
+    model: mujoco.MjModel,
+    bodies: Container[int],
+    inside: bool,
+    beyond_m: float = SHALLOW_M,
 ) -> Depths:
     """Return the overlaps of a robot's bodies with each other, or with everything else."""
     depths: Depths = {}
     for contact in data.contact:
-        pair = [int(model.geom_bodyid[geom]) for geom in contact.geom]
-        if not names.keys() & set(pair) or (set(pair) <= names.keys()) is not inside:
+        pair = (int(model.geom_bodyid[geom]) for geom in contact.geom)
+        body, other = sorted(pair, key=lambda number: (number not in bodies, number))
+        if body not in bodies or (other in bodies) is not inside:
             continue
-        if contact.dist < -SHALLOW_M:
-            body, other = pair if pair[0] in names else pair[::-1]
+        if contact.dist < -beyond_m:
             depths[body, other] = max(depths.get((body, other), 0.0), -float(contact.dist))
     return depths
 
@@ -233,7 +227,7 @@ def _own_overlaps(model: mujoco.MjModel, data: mujoco.MjData, names: Mapping[int
         for mask, values in zip(masks, before, strict=True):
             mask[:] = values
     jointed = set(jointed_pairs(model, sorted(names)))
-    return {pair: d for pair, d in depths.items() if (min(pair), max(pair)) not in jointed}
+    return {pair: depth for pair, depth in depths.items() if pair not in jointed}
 
 
 def _sunk(

@@ -168,12 +168,9 @@ def _show(channel: CameraEnd) -> int:
 
 def _view(scene: RenderScene, state: CameraSnapshot) -> View:
     """Return the first view of a state. It is slow, and does not disturb the drawing."""
-    data = mujoco.MjData(scene.model)
-    data.qpos[:] = state.qpos
-    data.mocap_pos[:] = state.mocap_positions
-    data.mocap_quat[:] = state.mocap_quaternions
-    mujoco.mj_kinematics(scene.model, data)
-    return first_view(scene.model, data) or DEFAULT_VIEW
+    beside = RenderScene(scene.model)
+    beside.pose(state)
+    return first_view(beside.model, beside.data) or DEFAULT_VIEW
 
 
 def _place_camera(viewer: "Handle", view: View) -> None:

@@ -75,6 +75,18 @@ def test_links_inside_each_other_are_reported_with_the_depth(arm, parts, self_co
     assert "links 'hand' and 'tool': they overlap by 20 mm" in str(finding)
 
 
+def test_links_whose_shapes_overlap_in_both_orders_are_reported_once(arm, parts):
+    def shapes(name):
+        ball = '<collision><geometry><sphere radius="0.12"/></geometry></collision></link>'
+        return box(parts, name).replace("</link>", ball)
+
+    more = shapes("grip") + parts.link("far", 0.1) + shapes("tool")
+    more += parts.joint("k", "hand", "grip", xyz="0 0 0.5") + parts.joint("l", "grip", "far")
+    more += parts.joint("m", "far", "tool", xyz="0 0 0.18")
+    [finding] = [f for f in arm(1.0, more=more) if "overlap" in str(f)]
+    assert "links 'grip' and 'tool': they overlap by " in str(finding)
+
+
 def test_looking_changes_nothing(parts):
     urdf = parts.robot(
         box(parts, "base"),

@@ -22,6 +22,7 @@ from arm_control.manager.controller_creation import (
     parameters_of,
 )
 from arm_control.manager.controller_manager import ControllerManager
+from arm_control.manager.loaded_controllers import unknown_controller
 from arm_control.manager.node_arguments import controller_arguments, parameter_files
 from arm_control.manager.parameter_file import ControllerParameterFile
 from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
@@ -280,10 +281,8 @@ class ControlPlane:
     def _find(self, name: str, action: str) -> ControllerNode:
         node = self._nodes.get(name)
         if node is None:
-            raise ControllerManagerError(
-                f"Could not {action} controller with name '{name}' because no controller with "
-                f"this name exists; loaded: {', '.join(self._nodes) or 'none'}"
-            )
+            loaded = ", ".join(self._nodes) or "none"
+            raise ControllerManagerError(f"{unknown_controller(name, action)}; loaded: {loaded}")
         return node
 
     def _wait_for_executor(self) -> None:
