@@ -11,7 +11,7 @@ from typing import Any
 
 from arm_node.limited_yaml import YamlError, load_yaml
 from arm_node.user_file import read_text
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import SettingError
 
 PLANNING = "robot_description_planning"
 SEMANTIC = "robot_description_semantic"
@@ -37,7 +37,7 @@ def move_group_parameters(folder: Path, *, octomap: bool = False) -> dict[str, A
     semantic = sorted(place.glob("*.srdf"))
     if len(semantic) > 1:
         names = ", ".join(path.name for path in semantic)
-        raise _refusal(f"{place} has several SRDFs: {names}; give the folder of one robot")
+        raise SettingError(f"{place} has several SRDFs: {names}; give the folder of one robot")
     parameters: dict[str, Any] = {}
     if semantic:
         parameters[SEMANTIC] = _text(semantic[0])
@@ -54,12 +54,12 @@ def move_group_parameters(folder: Path, *, octomap: bool = False) -> dict[str, A
     if octomap:
         sensors = _yaml(place / SENSORS_FILE)
         if not sensors.get("sensors"):
-            raise _refusal(f"octomap:=true needs {place / SENSORS_FILE} with a list of sensors")
+            raise SettingError(f"octomap:=true needs {place / SENSORS_FILE} with a list of sensors")
         parameters.update(sensors)
     for path in sorted(place.glob(f"*{PIPELINE_SUFFIX}")):
         parameters[path.name.removesuffix(PIPELINE_SUFFIX)] = _yaml(path)
     if not parameters:
-        raise _refusal(
+        raise SettingError(
             f"{place} has no MoveIt configuration: no .srdf, kinematics.yaml, joint_limits.yaml "
             "or moveit_controllers.yaml"
         )
@@ -76,7 +76,7 @@ def servo_parameters(path: Path) -> dict[str, Any]:
         PlanningError: there is no such file, or it has no parameters.
     """
     if not path.is_file():
-        raise _refusal(f"there is no file {path}")
+        raise SettingError(f"there is no file {path}")
     values = _yaml(path)
     return {SERVO: values.get(SERVO, values)}
 
@@ -87,11 +87,11 @@ def _yaml(path: Path) -> Mapping[str, Any]:
     try:
         values = load_yaml(_text(path))
     except YamlError as error:
-        raise _refusal(f"{path}: {error}") from error
+        raise SettingError(f"{path}: {error}") from error
     if values is None:
         return {}
     if not isinstance(values, Mapping):
-        raise _refusal(f"{path} is not a mapping of names to values")
+        raise SettingError(f"{path} is not a mapping of names to values")
     # A file for ros2 run has one more level around the values.
     node = values.get("/**", values)
     return node.get("ros__parameters", node) if isinstance(node, Mapping) else {}
@@ -101,8 +101,4 @@ def _text(path: Path) -> str:
     try:
         return read_text(path)
     except (OSError, UnicodeDecodeError) as error:
-        raise _refusal(f"cannot read {path}: {error}") from error
-
-
-def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.FAILURE, sentence)
+        raise SettingError(f"cannot read {path}: {error}") from error

@@ -2,6 +2,9 @@
 
 PlanningError            a request that cannot be answered, or a plan that was not found
 ├── SrdfError            an SRDF that cannot be used
+├── SettingError         a parameter, or a file of a MoveIt configuration, that cannot be used
+├── InvalidGoalError     a goal or a constraint that cannot be used
+├── InvalidPlanError     a motion that cannot be planned as it is described
 ├── PerceptionError      a view in which nothing can be found
 └── MissingOmplError     OMPL is not installed
 """
@@ -62,6 +65,27 @@ class SrdfError(PlanningError):
 
     def __init__(self, message: str) -> None:
         super().__init__(MoveItErrorCode.FAILURE, message)
+
+
+class SettingError(PlanningError):
+    """A parameter, or a file of a MoveIt configuration, that cannot be used."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(MoveItErrorCode.FAILURE, message)
+
+
+class InvalidGoalError(PlanningError):
+    """A goal or a constraint that cannot be used."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, message)
+
+
+class InvalidPlanError(PlanningError):
+    """A motion that cannot be planned as it is described."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(MoveItErrorCode.INVALID_MOTION_PLAN, message)
 
 
 class PerceptionError(PlanningError):

@@ -23,7 +23,7 @@ from arm_planning.constraints.constraints import (
     tightened,
 )
 from arm_planning.constraints.regions import describe_shape, distance_outside, local_point
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidGoalError
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
 
 Array = NDArray[np.float64]
@@ -224,12 +224,9 @@ class JointReader:
         if name not in self._joints:
             known = describe_known(name, self._joints, "the robot has")
             sentence = f"a constraint names the joint '{name}'; {known}"
-            raise PlanningError(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, sentence)
+            raise InvalidGoalError(sentence)
         if not all(map(math.isfinite, (constraint.position, constraint.above, constraint.below))):
-            raise PlanningError(
-                MoveItErrorCode.INVALID_GOAL_CONSTRAINTS,
-                f"the constraint on joint '{name}' is not finite",
-            )
+            raise InvalidGoalError(f"the constraint on joint '{name}' is not finite")
 
     def position(self, name: str, q: Array) -> float:
         """Return a joint's position, rad or m."""

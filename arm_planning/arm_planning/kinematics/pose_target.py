@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidGoalError
 
 Array = NDArray[np.float64]
 
@@ -33,24 +33,26 @@ def checked_pose(pose: RigidTransform | Array) -> tuple[Array, Array]:
         )
     matrix = np.asarray(pose, dtype=float)
     if matrix.shape != (4, 4):
-        raise _refused(f"a pose is a transform of shape (4, 4), not {matrix.shape}")
+        raise InvalidGoalError(f"a pose is a transform of shape (4, 4), not {matrix.shape}")
     position, rotation = _checked_position(matrix[:3, 3].copy()), matrix[:3, :3].reshape(9)
     if not np.isfinite(rotation).all():
-        raise _refused("the target's rotation has a number that is not finite")
+        raise InvalidGoalError("the target's rotation has a number that is not finite")
     quaternion, back = np.empty(4), np.empty(9)
     mujoco.mju_mat2Quat(quaternion, rotation)
     # The matrix of a quaternion is a rotation; the given one is if it is the same.
     mujoco.mju_quat2Mat(back, quaternion)
     if np.abs(back - rotation).max() > UNIT_WITHIN:
-        raise _refused("the target's rotation matrix is not orthonormal and right-handed")
+        raise InvalidGoalError("the target's rotation matrix is not orthonormal and right-handed")
     return position, quaternion
 
 
 def _checked_position(position: Array) -> Array:
     if not np.isfinite(position).all():
-        raise _refused(f"the target's position has a number that is not finite: {_text(position)}")
+        raise InvalidGoalError(
+            f"the target's position has a number that is not finite: {_text(position)}"
+        )
     if np.abs(position).max() > FARTHEST_M:
-        raise _refused(
+        raise InvalidGoalError(
             f"the target's position {_text(position)} is more than {FARTHEST_M / 1e3:g} km away"
         )
     return position
@@ -59,12 +61,12 @@ def _checked_position(position: Array) -> Array:
 def _checked_quaternion(wxyz: Array) -> Array:
     w, x, y, z = wxyz.tolist()
     if not np.isfinite(wxyz).all():
-        raise _refused(
+        raise InvalidGoalError(
             f"the target's quaternion has a number that is not finite: {_text((x, y, z, w))}"
         )
     length = math.hypot(w, x, y, z)
     if abs(length - 1.0) > UNIT_WITHIN:
-        raise _refused(
+        raise InvalidGoalError(
             f"the target's quaternion (x, y, z, w) = {_text((x, y, z, w))} has length "
             f"{length:.3g} instead of 1"
         )
@@ -73,7 +75,3 @@ def _checked_quaternion(wxyz: Array) -> Array:
 
 def _text(numbers: Array | tuple[float, ...]) -> str:
     return "(" + ", ".join(f"{number:g}" for number in numbers) + ")"
-
-
-def _refused(message: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, message)

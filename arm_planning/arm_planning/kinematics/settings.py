@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from arm_node.names import describe_known
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import SettingError
 from arm_planning.kinematics.search import Orientation
 from arm_planning.robot.model import PlanningModel
 
@@ -67,16 +67,12 @@ def _seconds(values: Mapping[str, object], name: str) -> float:
         or not isinstance(value, int | float)
         or not 0.0 <= value <= sys.float_info.max
     ):
-        raise _refusal(f"robot_description_kinematics.{name} is {value!r}; it is a time in s")
+        raise SettingError(f"robot_description_kinematics.{name} is {value!r}; it is a time in s")
     return float(value)
 
 
 def _switch(values: Mapping[str, object], name: str) -> bool:
     value = values.get(name, False)
     if not isinstance(value, bool):
-        raise _refusal(f"robot_description_kinematics.{name} is {value!r}; it is true or false")
+        raise SettingError(f"robot_description_kinematics.{name} is {value!r}; it is true or false")
     return value
-
-
-def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.FAILURE, sentence)

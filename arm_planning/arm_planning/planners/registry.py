@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping
 
 from arm_node.names import describe_known
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, PlanningError, SettingError
 from arm_planning.planners.problem import PathPlanner
 from arm_planning.planners.search import RrtConnectPlanner
 
@@ -76,9 +76,8 @@ def checked_parameter(planner_id: str, name: str, text: str) -> float:
     known = planner_parameters(planner_id)
     if name not in known:
         what = describe_known(name, known, "it has") if known else "it has none"
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
-            f"the planner {planner_name(planner_id)} has no parameter '{name}'; {what}",
+        raise SettingError(
+            f"the planner {planner_name(planner_id)} has no parameter '{name}'; {what}"
         )
     try:
         value = float(text)
@@ -87,7 +86,7 @@ def checked_parameter(planner_id: str, name: str, text: str) -> float:
     most = 1.0 if name == GOAL_BIAS else math.inf
     if not 0.0 <= value <= most or math.isinf(value):
         kind = "a number from 0 to 1" if name == GOAL_BIAS else "a number from 0"
-        raise PlanningError(MoveItErrorCode.FAILURE, f"{name} is '{text}'; it is {kind}")
+        raise SettingError(f"{name} is '{text}'; it is {kind}")
     return value
 
 

@@ -9,7 +9,7 @@ from arm_description.urdf.robot import Joint
 from arm_node.limited_yaml import YamlError, load_yaml
 from arm_node.names import describe_known, listing
 from arm_node.parameter_file import flat_parameters
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import PlanningError, SettingError
 from arm_planning.robot.model import PlanningLimits
 
 RAMP_S = 0.5
@@ -67,13 +67,13 @@ def read_joint_limits(text: str, source: str, warn: Warn) -> JointLimitSettings:
     try:
         content = load_yaml(text)
     except YamlError as error:
-        raise _refusal(f"{source} is not YAML: {error}") from error
+        raise SettingError(f"{source} is not YAML: {error}") from error
     if not isinstance(content, Mapping | None):
-        raise _refusal(f"{source} is not a mapping; it has the key 'joint_limits'")
+        raise SettingError(f"{source} is not a mapping; it has the key 'joint_limits'")
     try:
         return joint_limit_settings(content or {}, lambda text: warn(f"{source}: {text}"))
     except PlanningError as error:
-        raise _refusal(f"{source}: {error}") from error
+        raise SettingError(f"{source}: {error}") from error
 
 
 def joint_limit_settings(values: Mapping[str, object], warn: Warn) -> JointLimitSettings:
@@ -158,7 +158,7 @@ def _range(joint: Joint, given: GivenLimits, warn: Warn) -> tuple[float, float]:
     lower = lower if given.min_position is None else given.min_position
     upper = upper if given.max_position is None else given.max_position
     if not lower <= upper:
-        raise _refusal(
+        raise SettingError(
             f"joint '{joint.name}' has the lower limit {lower:g} above the upper limit {upper:g}"
         )
     return lower, upper
@@ -184,32 +184,28 @@ def _kind(key: str) -> str:
 def _value(name: str, value: object, kind: str) -> bool | float:
     if kind == "bool":
         if not isinstance(value, bool):
-            raise _refusal(f"{name} is {value!r}; it is true or false")
+            raise SettingError(f"{name} is {value!r}; it is true or false")
         return value
     number = _number(name, value)
     if kind == "maximum":
         # Decelerations are negative in Pilz' files.
         number = abs(number) if name.endswith("max_deceleration") else number
         if number <= 0.0:
-            raise _refusal(f"{name} is {value!r}; a limit is above 0")
+            raise SettingError(f"{name} is {value!r}; a limit is above 0")
     return number
 
 
 def _fraction(name: str, value: object) -> float:
     number = _number(name, value)
     if not 0.0 < number <= 1.0:
-        raise _refusal(f"{name} is {value!r}; it is above 0 and at most 1")
+        raise SettingError(f"{name} is {value!r}; it is above 0 and at most 1")
     return number
 
 
 def _number(name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise _refusal(f"{name} is {value!r}, which is not a finite number")
+        raise SettingError(f"{name} is {value!r}, which is not a finite number")
     # YAML's integers have no bounds, and `isfinite` raises an error above a float's.
     if not abs(value) <= sys.float_info.max:
-        raise _refusal(f"{name} is {value!r}, which is not a finite number")
+        raise SettingError(f"{name} is {value!r}, which is not a finite number")
     return float(value)
-
-
-def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.FAILURE, sentence)

@@ -13,7 +13,7 @@ from trajectory_msgs.msg import JointTrajectoryPoint
 
 from arm_node.names import describe_known, listing
 from arm_node.rigid_transform import RigidTransform, Vector
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidPlanError, MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.scene.object_checks import LARGEST_M, UNIT
 from arm_planning.trajectory import TimedTrajectory
@@ -197,23 +197,23 @@ def trajectory_of(message: RobotTrajectory) -> TimedTrajectory:
     given = message.joint_trajectory
     count = len(given.joint_names)
     if repeated := [name for name, times in Counter(given.joint_names).items() if times > 1]:
-        raise _no_trajectory(f"the trajectory names {listing(repeated)} more than once")
+        raise InvalidPlanError(f"the trajectory names {listing(repeated)} more than once")
     if message.multi_dof_joint_trajectory.points:
-        raise _no_trajectory(
+        raise InvalidPlanError(
             "the trajectory has a multi_dof_joint_trajectory, which no controller here follows"
         )
     points: list[Any] = list(given.points)
     for number, point in enumerate(points):
         sizes = {len(point.velocities), len(point.accelerations)} - {0}
         if len(point.positions) != count or not sizes <= {count}:
-            raise _no_trajectory(
+            raise InvalidPlanError(
                 f"point {number} of the trajectory has {len(point.positions)} positions for "
                 f"{count} joints"
             )
     times = np.array([seconds(point.time_from_start) for point in points])
     if (np.diff(times) <= 0.0).any():
         number = int(np.argmax(np.diff(times) <= 0.0)) + 1
-        raise _no_trajectory(
+        raise InvalidPlanError(
             f"point {number} of the trajectory is not later than the point before it"
         )
     return TimedTrajectory(
@@ -227,13 +227,9 @@ def _values(points: Sequence[Any], name: str, count: int) -> np.ndarray[Any, np.
     given = [list(getattr(point, name)) for point in points]
     for number, row in enumerate(given):
         if not all(map(math.isfinite, row)):
-            raise _no_trajectory(
+            raise InvalidPlanError(
                 f"point {number} of the trajectory has {name} that are not finite: "
                 + ", ".join(map(str, row))
             )
     missing = [math.nan] * count
     return np.array([row or missing for row in given]).reshape(len(points), count)
-
-
-def _no_trajectory(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.INVALID_MOTION_PLAN, sentence)

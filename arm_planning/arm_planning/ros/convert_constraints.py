@@ -19,7 +19,7 @@ from arm_planning.constraints.constraints import (
     OrientationError,
     PositionConstraint,
 )
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidGoalError, MoveItErrorCode, PlanningError
 from arm_planning.request import PlanRequest
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import Warn, quaternion_of, vector_of
@@ -89,10 +89,9 @@ def constraints_of(
         PlanningError: a link, joint or frame does not exist, or a number is not usable.
     """
     if message.visibility_constraints:
-        raise PlanningError(
-            MoveItErrorCode.INVALID_GOAL_CONSTRAINTS,
+        raise InvalidGoalError(
             "visibility constraints are not supported; joint, position and orientation "
-            "constraints are",
+            "constraints are"
         )
     return MotionConstraints(
         tuple(_joint(each, frames.model, warn) for each in message.joint_constraints),
@@ -141,12 +140,16 @@ def _joint(message: JointMessage, model: PlanningModel, warn: Warn) -> JointCons
     names = [joint.name for joint in model.robot.movable_joints]
     if message.joint_name not in names:
         known = describe_known(message.joint_name, names, "the robot has")
-        raise _invalid(f"a constraint names the joint '{message.joint_name}'; {known}")
+        raise InvalidGoalError(f"a constraint names the joint '{message.joint_name}'; {known}")
     numbers = (message.position, message.tolerance_above, message.tolerance_below)
     if not all(map(math.isfinite, numbers)):
-        raise _invalid(f"the constraint on joint '{message.joint_name}' is not finite: {numbers}")
+        raise InvalidGoalError(
+            f"the constraint on joint '{message.joint_name}' is not finite: {numbers}"
+        )
     if message.tolerance_above < 0.0 or message.tolerance_below < 0.0:
-        raise _invalid(f"the constraint on joint '{message.joint_name}' has a negative tolerance")
+        raise InvalidGoalError(
+            f"the constraint on joint '{message.joint_name}' has a negative tolerance"
+        )
     return JointConstraint(
         message.joint_name,
         message.position,
@@ -174,7 +177,7 @@ def _position(message: PositionMessage, frames: ConstraintFrames, warn: Warn) ->
         what = f"the offset of '{message.link_name}'"
         point = vector_of(message.target_point_offset, what)
     except PlanningError as error:
-        raise _invalid(str(error)) from error
+        raise InvalidGoalError(str(error)) from error
     frame, origin = frames.reference(message.header.frame_id)
     link, offset = frames.link_and_offset(message.link_name)
     return PositionConstraint(
@@ -195,7 +198,7 @@ def _orientation(
     try:
         given = quaternion_of(message.orientation, what)
     except PlanningError as error:
-        raise _invalid(str(error)) from error
+        raise InvalidGoalError(str(error)) from error
     wanted = quaternion_product(origin.rotation, given)
     tolerances = (
         message.absolute_x_axis_tolerance,
@@ -203,9 +206,9 @@ def _orientation(
         message.absolute_z_axis_tolerance,
     )
     if not all(tolerance >= 0.0 for tolerance in tolerances):
-        raise _invalid(f"{what} has tolerances that are not positive: {tolerances}")
+        raise InvalidGoalError(f"{what} has tolerances that are not positive: {tolerances}")
     if message.parameterization not in (0, 1):
-        raise _invalid(
+        raise InvalidGoalError(
             f"{what} has the parameterization {message.parameterization}; there are "
             "0 (XYZ_EULER_ANGLES) and 1 (ROTATION_VECTOR)"
         )
@@ -226,7 +229,3 @@ def _weight(weight: float, what: str, warn: Warn) -> float:
         return weight
     warn(f"the weight of the constraint on {what} is {weight:g}; 1 is used")
     return 1.0
-
-
-def _invalid(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, sentence)

@@ -17,6 +17,7 @@ from arm_planning.ros.convert_shapes import placed_shapes
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.attached_changes import AttachedChange
 from arm_planning.scene.object_changes import ObjectChange, Operation
+from arm_planning.scene.object_checks import refusal
 from arm_planning.scene.scene_changes import FixedTransform, SceneChange
 
 OPERATIONS = {
@@ -78,17 +79,13 @@ def object_change_of(message: ObjectMessage) -> ObjectChange:
     owner = f"object '{message.id}'"
     operation = OPERATIONS.get(message.operation)
     if operation is None:
-        raise PlanningError(
-            MoveItErrorCode.INVALID_OBJECT_NAME,
+        raise refusal(
             f"{owner} has the operation {message.operation!r}; there are ADD, REMOVE, APPEND and "
-            "MOVE",
+            "MOVE"
         )
     names, poses = list(message.subframe_names), list(message.subframe_poses)
     if len(names) != len(poses):
-        raise PlanningError(
-            MoveItErrorCode.INVALID_OBJECT_NAME,
-            f"{owner} has {len(names)} names and {len(poses)} poses of subframes",
-        )
+        raise refusal(f"{owner} has {len(names)} names and {len(poses)} poses of subframes")
     moves = operation is Operation.MOVE
     every = (message.primitive_poses, message.mesh_poses, message.plane_poses)
     return ObjectChange(

@@ -6,7 +6,7 @@ from math import isfinite
 from typing import Any
 
 from arm_node.names import describe_known
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import SettingError
 
 PLUGIN = "occupancy_map_monitor/PointCloudOctomapUpdater"
 RESOLUTION_M = 0.1
@@ -62,7 +62,7 @@ def octomap_settings(given: Mapping[str, Any]) -> OctomapSettings | None:
     """
     names = given.get("sensors") or ()
     if isinstance(names, str) or not all(isinstance(name, str) for name in names):
-        raise _refusal(f"sensors is {names!r}; it is a list of names")
+        raise SettingError(f"sensors is {names!r}; it is a list of names")
     sensors = tuple(_sensor(given, name) for name in names if name)
     if not sensors:
         return None
@@ -74,13 +74,13 @@ def _sensor(given: Mapping[str, Any], name: str) -> OctomapSensor:
     plugin = given.get(f"{name}.sensor_plugin", "")
     if plugin != PLUGIN:
         known = describe_known(str(plugin), [PLUGIN], "there is")
-        raise _refusal(f"{name}.sensor_plugin is '{plugin}'; {known}")
+        raise SettingError(f"{name}.sensor_plugin is '{plugin}'; {known}")
     topic = given.get(f"{name}.point_cloud_topic", "")
     if not topic or not isinstance(topic, str):
-        raise _refusal(f"{name}.point_cloud_topic is {topic!r}; it is a topic's name")
+        raise SettingError(f"{name}.point_cloud_topic is {topic!r}; it is a topic's name")
     subsample = given.get(f"{name}.point_subsample", 1)
     if not isinstance(subsample, int) or subsample < 1:
-        raise _refusal(f"{name}.point_subsample is {subsample}; it is a whole number from 1")
+        raise SettingError(f"{name}.point_subsample is {subsample}; it is a whole number from 1")
     padding_m = _number(given, f"{name}.padding_offset", 0.0, above=-1e-9)
     return OctomapSensor(
         name,
@@ -96,12 +96,8 @@ def _sensor(given: Mapping[str, Any], name: str) -> OctomapSensor:
 def _number(given: Mapping[str, Any], name: str, default: float, above: float) -> float:
     value = given.get(name, default)
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise _refusal(f"{name} is {value!r}; it is a number")
+        raise SettingError(f"{name} is {value!r}; it is a number")
     if not (isfinite(value) and value > above):
         bound = "above 0" if above == 0.0 else "not negative"
-        raise _refusal(f"{name} is {value}; it is finite and {bound}")
+        raise SettingError(f"{name} is {value}; it is finite and {bound}")
     return float(value)
-
-
-def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.FAILURE, sentence)

@@ -17,7 +17,7 @@ from arm_description.transforms import quaternion_from_rpy
 from arm_description.urdf.parser import parse_urdf
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.mesh_pieces import MeshPieces
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import SettingError
 from arm_planning.kinematics.settings import KinematicsSettings, kinematics_settings
 from arm_planning.planner import resting_positions
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits, cartesian_limits
@@ -120,7 +120,7 @@ def values_below(node: Node, prefix: str) -> dict[str, Any]:
 def _text(node: Node, name: str) -> str:
     value = node.get_parameter(name).value if node.has_parameter(name) else ""
     if not isinstance(value, str):
-        raise PlanningError(MoveItErrorCode.FAILURE, f"the parameter {name} is not a text")
+        raise SettingError(f"the parameter {name} is not a text")
     return value
 
 
@@ -129,9 +129,7 @@ def _in_world(node: Node) -> RigidTransform | None:
         return None
     given: Any = node.get_parameter(POSE).value if node.has_parameter(POSE) else ()
     if len(given or ()) not in (0, 6):
-        raise PlanningError(
-            MoveItErrorCode.FAILURE, f"{POSE} has {len(given)} numbers; it is x y z roll pitch yaw"
-        )
+        raise SettingError(f"{POSE} has {len(given)} numbers; it is x y z roll pitch yaw")
     x, y, z, *rpy = given or (0.0,) * 6
     turned = quaternion_from_rpy(rpy).tolist()
     return RigidTransform((x, y, z), (turned[0], turned[1], turned[2], turned[3]))
@@ -140,9 +138,7 @@ def _in_world(node: Node) -> RigidTransform | None:
 def _seed(node: Node) -> int:
     value = node.get_parameter("seed").value if node.has_parameter("seed") else 0
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-        raise PlanningError(
-            MoveItErrorCode.FAILURE, f"seed is {value}; it is a whole number from 0"
-        )
+        raise SettingError(f"seed is {value}; it is a whole number from 0")
     return value
 
 
@@ -163,9 +159,8 @@ def _from_topic(node: Node, topic: str) -> str:
     executor.remove_node(node)
     node.destroy_subscription(subscription)
     if not received:
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
+        raise SettingError(
             f"there is no robot: the parameter {topic} is empty, and nobody published the topic "
-            f"{topic} within {TOPIC_TIMEOUT_S:g} s",
+            f"{topic} within {TOPIC_TIMEOUT_S:g} s"
         )
     return received[0]

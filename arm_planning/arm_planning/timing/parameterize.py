@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidPlanError, MoveItErrorCode, PlanningError
 from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing import stepped_motion
 from arm_planning.timing.driven_spline import limit_violation
@@ -113,16 +113,15 @@ def scaling_factor(value: float, name: str) -> float:
 def _checked(path: ArrayLike, joints: Sequence[str]) -> Array:
     points = np.array(path, dtype=np.float64)
     if points.size == 0:
-        raise PlanningError(MoveItErrorCode.INVALID_MOTION_PLAN, "the path has no way points")
+        raise InvalidPlanError("the path has no way points")
     if points.ndim != 2 or points.shape[1] != len(joints):
         raise ValueError(f"a path of {len(joints)} joints has shape (m, {len(joints)})")
     usable = np.abs(points) <= _LARGEST_POSITION
     if not usable.all():
         row, column = np.argwhere(~usable)[0].tolist()
-        raise PlanningError(
-            MoveItErrorCode.INVALID_MOTION_PLAN,
+        raise InvalidPlanError(
             f"way point {row} of the path has {points[row, column]:g} for joint "
-            f"'{joints[column]}'; a position must be a number of at most {_LARGEST_POSITION:g}",
+            f"'{joints[column]}'; a position must be a number of at most {_LARGEST_POSITION:g}"
         )
     return points
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_node.rigid_transform import RigidTransform, Vector
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidPlanError
 from arm_planning.planners.pose_line import PoseLine
 
 Array = NDArray[np.float64]
@@ -69,7 +69,7 @@ def arc_through(start: RigidTransform, interim: Vector, goal: RigidTransform) ->
     normal = np.cross(a, b)
     area = float(normal @ normal)
     if math.sqrt(area) < COLLINEAR:
-        raise _no_circle("the start, the interim point and the goal of CIRC are on a line")
+        raise InvalidPlanError("the start, the interim point and the goal of CIRC are on a line")
     towards = (b @ b) * np.cross(normal, a) + (a @ a) * np.cross(b, normal)
     centre = first + towards / (2.0 * area)
     return _arc(start, goal, centre, normal / math.sqrt(area))
@@ -85,15 +85,15 @@ def arc_about(start: RigidTransform, centre: Vector, goal: RigidTransform) -> Po
     first, middle, last = _points(start, centre, goal)
     radius, other = np.linalg.norm(first - middle), np.linalg.norm(last - middle)
     if abs(radius - other) > LARGEST_RADIUS_DIFFERENCE_M:
-        raise _no_circle(
+        raise InvalidPlanError(
             f"the centre of CIRC is {radius:.4f} m from the start and {other:.4f} m from the goal"
         )
     if min(radius, other) < SMALLEST_RADIUS_M:
-        raise _no_circle(f"the circle of CIRC is too small: its radius is {radius:.2g} m")
+        raise InvalidPlanError(f"the circle of CIRC is too small: its radius is {radius:.2g} m")
     normal = np.cross(first - middle, last - middle)
     size = float(np.linalg.norm(normal))
     if size < COLLINEAR:
-        raise _no_circle(
+        raise InvalidPlanError(
             "the start, the centre and the goal of CIRC are on a line, so the plane of the circle "
             "is open; give an interim point instead"
         )
@@ -105,7 +105,7 @@ def _arc(start: RigidTransform, goal: RigidTransform, centre: Array, axis: Array
     outward = first - centre
     radius = float(np.linalg.norm(outward))
     if radius < SMALLEST_RADIUS_M:
-        raise _no_circle(f"the circle of CIRC is too small: its radius is {radius:.2g} m")
+        raise InvalidPlanError(f"the circle of CIRC is too small: its radius is {radius:.2g} m")
     forward = np.cross(axis, outward)
     spoke = last - centre
     turn = math.atan2(float(spoke @ forward), float(spoke @ outward)) % (2.0 * math.pi)
@@ -117,7 +117,3 @@ def _points(
     start: RigidTransform, point: Vector, goal: RigidTransform
 ) -> tuple[Array, Array, Array]:
     return np.array(start.position), np.array(point), np.array(goal.position)
-
-
-def _no_circle(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.INVALID_MOTION_PLAN, sentence)

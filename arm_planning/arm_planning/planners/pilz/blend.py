@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidPlanError, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.planners.pilz.even_cubics import even_cubics
 from arm_planning.planners.pose_line import PoseLine
@@ -130,10 +129,9 @@ def _until_outside(
             return before
         before = time_s
     side = "before" if backward else "after"
-    raise PlanningError(
-        MoveItErrorCode.INVALID_MOTION_PLAN,
+    raise InvalidPlanError(
         f"{name}: the motion {side} the blend stays within its radius of {radius_m:g} m; "
-        "make the radius smaller",
+        "make the radius smaller"
     )
 
 
@@ -148,16 +146,12 @@ def _corrected(plain: Window, kinematics: InverseKinematics, name: str) -> Windo
         zip(_fade(shares).tolist(), befores, afters, means, strict=True)
     )
     for index, (fade, before, after, mean) in enumerate(rows[1:-1], 1):
-        pose = _between(kinematics.tip_pose(before), kinematics.tip_pose(after), fade)
+        pose = PoseLine(kinematics.tip_pose(before), kinematics.tip_pose(after)).at(fade)
         try:
             corrections[index] = kinematics.follow(pose, mean) - mean
         except PlanningError as error:
             raise PlanningError(error.code, f"{name}: {error}") from error
     return Window(plain.first, plain.second, plain.begin_s, plain.shift_s, plain.end_s, corrections)
-
-
-def _between(first: RigidTransform, second: RigidTransform, share: float) -> RigidTransform:
-    return PoseLine(first, second).at(share)
 
 
 def _fade(share: Array) -> Array:

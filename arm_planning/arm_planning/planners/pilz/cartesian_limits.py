@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 from arm_node.names import describe_known
 from arm_node.parameter_file import flat_parameters
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import SettingError
 
 _PREFIX = "cartesian_limits."
 
@@ -49,17 +49,13 @@ def cartesian_limits(values: Mapping[str, object]) -> CartesianLimits:
             continue
         key = name.removeprefix(_PREFIX)
         if key not in known:
-            raise _refusal(f"no limit '{name}'; {describe_known(key, known, 'there are')}")
+            raise SettingError(f"no limit '{name}'; {describe_known(key, known, 'there are')}")
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise _refusal(f"{name} is not a number: {value!r}")
+            raise SettingError(f"{name} is not a number: {value!r}")
         is_negative = key == "max_trans_dec"
         # YAML's integers have no bounds.
         if not 0.0 < (-value if is_negative else value) <= sys.float_info.max:
             kind = "negative" if is_negative else "positive"
-            raise _refusal(f"{name} is {value!r}; it must be {kind} and finite")
+            raise SettingError(f"{name} is {value!r}; it must be {kind} and finite")
         given[key] = float(value)
     return CartesianLimits(**given)
-
-
-def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.FAILURE, sentence)

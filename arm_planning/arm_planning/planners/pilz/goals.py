@@ -12,7 +12,7 @@ from arm_planning.constraints.constraints import (
     OrientationConstraint,
     PositionConstraint,
 )
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidGoalError, InvalidPlanError, MoveItErrorCode, PlanningError
 from arm_planning.kinematics.forward import ForwardKinematics
 from arm_planning.kinematics.pose_target import checked_pose
 from arm_planning.request import PlanRequest
@@ -62,20 +62,19 @@ def checked_goal(model: PlanningModel, request: PlanRequest, state: JointPositio
         ("Acceleration", request.acceleration_scaling),
     ):
         if not SMALLEST_SCALING <= value <= 1.0:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_MOTION_PLAN,
-                f"{name} scaling not in range [{SMALLEST_SCALING}, 1], actual value is: {value:g}",
+            raise InvalidPlanError(
+                f"{name} scaling not in range [{SMALLEST_SCALING}, 1], actual value is: {value:g}"
             )
     group = model.group(request.group)
     state = {**state, **(request.start or {})}
     start = _checked_start(group, state)
     if len(request.goals) != 1:
-        raise _bad_goal(
+        raise InvalidGoalError(
             f"Exactly one goal constraint required, but {len(request.goals)} goal constraints given"
         )
     (goal,) = request.goals
     if bool(goal.joints) == bool(goal.positions or goal.orientations):
-        raise _bad_goal("Only cartesian XOR joint goal allowed")
+        raise InvalidGoalError("Only cartesian XOR joint goal allowed")
     if goal.joints:
         return PilzGoal(group, start, state, group.tip, _joint_goal(group, goal, start), None)
     position, orientation = _pose_constraints(goal)
@@ -98,7 +97,7 @@ def frame_position(
         PlanningError: INVALID_GOAL_CONSTRAINTS: it has no region.
     """
     if not constraint.regions:
-        raise _bad_goal("Primitive pose in position constraints of goal missing")
+        raise InvalidGoalError("Primitive pose in position constraints of goal missing")
     frame = _frame(model, state, constraint.frame)
     return _checked_transform(frame.then(constraint.regions[0].pose)).position
 
@@ -145,14 +144,14 @@ def _joint_goal(group: JointGroup, goal: MotionConstraints, start: Array) -> Arr
     q = start.copy()
     for constraint in goal.joints:
         if constraint.joint not in group.joints:
-            raise _bad_goal(
+            raise InvalidGoalError(
                 f'Joint "{constraint.joint}" does not belong to group "{group.name}"; it has '
                 f"{listing(group.joints)}"
             )
         index = group.joints.index(constraint.joint)
         limits = group.limits[index]
         if not limits.lower - _OUTSIDE <= constraint.position <= limits.upper + _OUTSIDE:
-            raise _bad_goal(
+            raise InvalidGoalError(
                 f'Joint "{constraint.joint}" violates joint limits in goal constraints: '
                 f"{constraint.position:g} is not in [{limits.lower:g}, {limits.upper:g}]"
             )
@@ -162,20 +161,16 @@ def _joint_goal(group: JointGroup, goal: MotionConstraints, start: Array) -> Arr
 
 def _pose_constraints(goal: MotionConstraints) -> tuple[PositionConstraint, OrientationConstraint]:
     if len(goal.positions) != 1 or len(goal.orientations) != 1:
-        raise _bad_goal(
+        raise InvalidGoalError(
             "a pose goal has exactly one position and one orientation constraint; this one has "
             f"{len(goal.positions)} and {len(goal.orientations)}"
         )
     position, orientation = goal.positions[0], goal.orientations[0]
     if not position.link:
-        raise _bad_goal("Link name of position constraint missing")
+        raise InvalidGoalError("Link name of position constraint missing")
     if position.link != orientation.link:
-        raise _bad_goal(
+        raise InvalidGoalError(
             "Position and orientation constraint name do not match (Position constraint name: "
             f'"{position.link}" | Orientation constraint name: "{orientation.link}")'
         )
     return position, orientation
-
-
-def _bad_goal(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, sentence)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from arm_node.names import listing
 from arm_node.rigid_transform import Vector
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidGoalError, InvalidPlanError, MoveItErrorCode, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.planners.pilz.arc import PoseArc, arc_about, arc_through
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
@@ -131,10 +131,9 @@ class PilzPlanner:
     def _require_all_joints(goal: PilzGoal, request: PlanRequest, name: str) -> None:
         given = len({constraint.joint for constraint in request.goals[0].joints})
         if given != len(goal.group.joints):
-            raise PlanningError(
-                MoveItErrorCode.INVALID_GOAL_CONSTRAINTS,
+            raise InvalidGoalError(
                 f"{name}: the goal has {given} joints, and group '{goal.group.name}' has "
-                f"{len(goal.group.joints)}: {listing(goal.group.joints)}",
+                f"{len(goal.group.joints)}: {listing(goal.group.joints)}"
             )
 
     @staticmethod
@@ -155,18 +154,18 @@ class PilzPlanner:
         """Return which point of the arc the path constraints give, and where it is."""
         path = request.path
         if path.name not in ("interim", "center"):
-            raise _no_arc(
+            raise InvalidPlanError(
                 'No path constraint named "interim" or "center" found (found path constraint: '
                 f'"{path.name}")'
             )
         if len(path.positions) != 1:
-            raise _no_arc(
+            raise InvalidPlanError(
                 "CIRC needs exactly one position constraint in its path constraints, the "
                 f"{path.name} point; there are {len(path.positions)}"
             )
         (constraint,) = path.positions
         if not constraint.regions:
-            raise _no_arc(f"the {path.name} point of CIRC has no primitive pose")
+            raise InvalidPlanError(f"the {path.name} point of CIRC has no primitive pose")
         links = [link.name for link in self.model.robot.links]
         if constraint.link and constraint.link not in links:
             raise PlanningError(
@@ -175,7 +174,3 @@ class PilzPlanner:
                 f"{listing(links)}",
             )
         return path.name, frame_position(self.model, goal.state, constraint)
-
-
-def _no_arc(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.INVALID_MOTION_PLAN, sentence)

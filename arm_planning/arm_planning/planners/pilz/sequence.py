@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidPlanError, MoveItErrorCode, PlanningError
 from arm_planning.planners.pilz.blend import DrivenMotion, Window, window
 from arm_planning.planners.pilz.planner import Free, PilzPlanner
 from arm_planning.planners.pilz.tip_motion import CLOSENESS, checked, within_limits
@@ -88,12 +88,12 @@ def plan_sequence(
 def _check_radii(items: Sequence[SequenceItem]) -> None:
     for number, item in enumerate(items):
         if not 0.0 <= item.blend_radius_m < np.inf:
-            raise _invalid(
+            raise InvalidPlanError(
                 f"All blending radii MUST be non negative; that of motion {number} is "
                 f"{item.blend_radius_m:g}"
             )
     if items and items[-1].blend_radius_m:
-        raise _invalid(
+        raise InvalidPlanError(
             "The last blending radius must be zero; it is "
             f"{items[-1].blend_radius_m:g}, and no motion follows"
         )
@@ -151,7 +151,7 @@ def _check_overlaps(
         )
         distance = float(np.linalg.norm(there - here))
         if radii[number] + radii[number + 1] > distance:
-            raise _invalid(
+            raise InvalidPlanError(
                 f"Overlapping blend radii between command [{number}] and [{number + 1}].: "
                 f"{radii[number]:g} m and {radii[number + 1]:g} m, {distance:.4f} m apart"
             )
@@ -243,7 +243,3 @@ def _appended(group: JointGroup, parts: Sequence[TimedTrajectory]) -> TimedTraje
             accelerations=np.concatenate((whole.accelerations, part.accelerations[1:])),
         )
     return whole
-
-
-def _invalid(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.INVALID_MOTION_PLAN, sentence)
