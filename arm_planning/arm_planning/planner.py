@@ -25,7 +25,6 @@ from arm_planning.constraints.constraints import (
 from arm_planning.constraints.evaluation import ConstraintEvaluator, ConstraintResult
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.execution.remaining import remaining
-from arm_planning.kinematics.forward import ForwardKinematics, as_rigid_transform
 from arm_planning.kinematics.group_kinematics import GroupKinematics
 from arm_planning.kinematics.settings import KinematicsSettings
 from arm_planning.pipeline import (
@@ -48,6 +47,7 @@ from arm_planning.robot.limits import JointLimitSettings
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
 from arm_planning.robot.srdf import parse_srdf
 from arm_planning.scene.allowed_collisions import allowed_collisions
+from arm_planning.scene.frames import LinkPoses
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.srdf_maker import make_srdf
 from arm_planning.trajectory import TimedTrajectory
@@ -110,7 +110,6 @@ class Planner:
         self._settings = dict(kinematics or {})
         self.scene = scene or PlanningScene(resting_positions(model))
         self._meshes = MeshPieces(resources)
-        self._forward = ForwardKinematics(model)
         self._checkers: dict[str, tuple[PlanningScene, SceneChecker]] = {}
         self._inverse: dict[str, tuple[JointPositions, GroupKinematics]] = {}
 
@@ -239,11 +238,9 @@ class Planner:
         """Return a link's pose in the planning frame.
 
         Raises:
-            PlanningError: there is no such link.
+            PlanningError: INVALID_LINK_NAME: there is no such link.
         """
-        positions = (scene or self.scene).positions
-        q = np.array([positions.get(joint, 0.0) for joint in self._forward.joints])
-        return as_rigid_transform(self._forward.pose(q, link))
+        return LinkPoses(self.model, (scene or self.scene).positions).of(link)
 
     def inverse(
         self,
@@ -401,12 +398,13 @@ class Planner:
         """Return what each constraint says about the scene's state."""
         scene = scene or self.scene
         every = JointGroup("", self.model.joints, (), (), ())
+        links = LinkPoses(self.model, scene.positions)
         evaluator = ConstraintEvaluator(
             constraints,
             self.model,
             every,
             scene.positions,
-            self._forward.pose,
+            lambda _, link: np.array(links.of(link).matrix()),
         )
         return evaluator.results(every.positions(scene.positions))
 

@@ -11,7 +11,7 @@ from arm_description.resources import ResourceFinder
 from arm_gazebo.world.shapes import WorldShapes
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.configuration import PLANNING, SEMANTIC, move_group_parameters
-from arm_planning.kinematics.forward import as_rigid_transform
+from arm_planning.kinematics.pose_target import as_rigid_transform
 from arm_planning.pipeline import Timing
 from arm_planning.planner import Planner
 from arm_planning.robot.limits import joint_limit_settings

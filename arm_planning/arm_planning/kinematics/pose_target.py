@@ -46,6 +46,15 @@ def checked_pose(pose: RigidTransform | Array) -> tuple[Array, Array]:
     return position, quaternion
 
 
+def as_rigid_transform(matrix: Array) -> RigidTransform:
+    """Return the pose of a homogeneous transform, (4, 4)."""
+    quaternion = np.empty(4)
+    mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(matrix[:3, :3]).ravel())
+    w, x, y, z = quaternion.tolist()
+    px, py, pz = matrix[:3, 3].tolist()
+    return RigidTransform((px, py, pz), (x, y, z, w))
+
+
 def _checked_position(position: Array) -> Array:
     if not np.isfinite(position).all():
         raise InvalidGoalError(

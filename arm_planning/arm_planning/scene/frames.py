@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from arm_description.transforms import quaternion_from_rpy
 from arm_description.urdf.robot import Joint
-from arm_node.names import describe_known
+from arm_node.names import describe_known, listing
 from arm_node.rigid_transform import Quaternion, RigidTransform
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
@@ -49,6 +49,19 @@ class LinkPoses:
             pose = pose.then(RigidTransform(joint.origin.xyz, _rotation(joint)))
             pose = self._poses[joint.child] = pose.then(self._motion(joint))
         return pose
+
+    def of(self, link: str) -> RigidTransform:
+        """Return the pose of a link, or of the planning frame itself.
+
+        Raises:
+            PlanningError: INVALID_LINK_NAME: there is no such link.
+        """
+        if link not in self:
+            raise PlanningError(
+                MoveItErrorCode.INVALID_LINK_NAME,
+                f"no link '{link}'; the robot has {listing(self.links)}",
+            )
+        return self[link]
 
     def _motion(self, joint: Joint) -> RigidTransform:
         if not joint.type.is_scalar:

@@ -3,14 +3,27 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from planning_models import model_of
 from planning_scenes import CUBE, LINKS, MODEL, SCENE, at
+from robots import joint, link, robot
 
 from arm_description import forward_kinematics
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.robot.model import PlanningModel
 from arm_planning.scene.frames import LinkPoses, frame_pose
 from arm_planning.scene.objects import AttachedBody, CollisionObject
 
+GRIPPING = model_of(
+    robot(
+        *(link(name) for name in ("base", "upper", "hand", "left", "right")),
+        joint("shoulder", "base", "upper", xyz="0.1 0 0.2", axis="0 0.6 0.8"),
+        joint("rail", "upper", "hand", xyz="0 0.3 0", axis="1 0 0", kind="prismatic"),
+        joint("grip", "hand", "left", xyz="0 0 0.1", axis="0 0 1"),
+        joint("follow", "hand", "right", "<mimic joint='grip' multiplier='-1'/>", xyz="0 0 0.1"),
+    ),
+    arm=(("shoulder", "rail"), "hand"),
+)
 CUP = CollisionObject("cup", at(y=1), (CUBE,), {"rim": at(z=1)})
 FULL = replace(
     SCENE,
@@ -20,11 +33,26 @@ FULL = replace(
 )
 
 
-def test_links_are_where_forward_kinematics_puts_them():
-    positions = {"turn": 0.7, "slide": -0.3}
-    links = LinkPoses(MODEL, positions)
-    for name, expected in forward_kinematics(MODEL.robot, positions).items():
+@pytest.mark.parametrize(
+    ("model", "positions"),
+    [
+        (MODEL, {"turn": 0.7, "slide": -0.3}),
+        (GRIPPING, {"shoulder": 0.3, "rail": -0.1, "grip": 0.8}),
+    ],
+    ids=["slider", "with_mimic"],
+)
+def test_links_are_where_forward_kinematics_puts_them(
+    model: PlanningModel, positions: dict[str, float]
+):
+    links = LinkPoses(model, positions)
+    for name, expected in forward_kinematics(model.robot, positions).items():
         assert np.array(links[name].matrix()) == pytest.approx(expected, abs=1e-12), name
+
+
+def test_an_unknown_link_is_refused_with_those_that_exist():
+    with pytest.raises(PlanningError, match="no link 'foot'; the robot has base, upper") as refused:
+        LinkPoses(GRIPPING, {}).of("foot")
+    assert refused.value.code is MoveItErrorCode.INVALID_LINK_NAME
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,10 @@ import pytest
 from planning_models import model_of, mycobot, neighbours
 from robots import joint, link, robot
 
+from arm_description import forward_kinematics
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.model import CollisionModel
 from arm_planning.errors import PlanningError
-from arm_planning.kinematics.forward import ForwardKinematics
 from arm_planning.robot.model import PlanningModel
 from arm_planning.scene.objects import CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
@@ -67,8 +67,7 @@ class Driven:
 
     @property
     def tip(self) -> np.ndarray:
-        group = self.jog.group
-        return ForwardKinematics(self.model, group.name, self.positions).pose(self.q, group.tip)
+        return forward_kinematics(self.model.robot, self.positions)[self.jog.group.tip]
 
 
 def slider(*start: float, wall_at: float = inf, **settings) -> Driven:

@@ -13,10 +13,10 @@ from arm_planning.constraints.constraints import (
     PositionConstraint,
 )
 from arm_planning.errors import InvalidGoalError, InvalidPlanError, MoveItErrorCode, PlanningError
-from arm_planning.kinematics.forward import ForwardKinematics
 from arm_planning.kinematics.pose_target import checked_pose
 from arm_planning.request import PlanRequest
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
+from arm_planning.scene.frames import LinkPoses
 
 Array = NDArray[np.float64]
 
@@ -111,14 +111,10 @@ def _frame_rotation(
 
 
 def _frame(model: PlanningModel, state: JointPositions, name: str) -> RigidTransform:
-    if name in ("", model.frame):
-        return RigidTransform()
-    kinematics = ForwardKinematics(model)
-    matrix = kinematics.pose(np.array([state.get(joint, 0.0) for joint in model.joints]), name)
-    return _checked_transform(matrix)
+    return LinkPoses(model, state).of(name) if name else RigidTransform()
 
 
-def _checked_transform(pose: RigidTransform | Array) -> RigidTransform:
+def _checked_transform(pose: RigidTransform) -> RigidTransform:
     (x, y, z), (w, a, b, c) = (part.tolist() for part in checked_pose(pose))
     return RigidTransform((x, y, z), (a, b, c, w))
 
