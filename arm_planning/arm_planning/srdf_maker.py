@@ -43,16 +43,16 @@ def make_srdf(
     robot: Robot,
     warn: Warn,
     samples: int = MIN_SAMPLES,
-    seed: int = 0,
     meshes: MeshPieces | None = None,
 ) -> Srdf:
     """Return an SRDF with default groups and the pairs that are not checked.
+
+    The same robot gives the same SRDF.
 
     Args:
         robot: the robot.
         warn: is told what collides in the states called home, which are then moved.
         samples: number of states to look at, at least MIN_SAMPLES.
-        seed: the same robot and seed give the same SRDF.
         meshes: cuts meshes, as for `CollisionModel`.
 
     Raises:
@@ -64,7 +64,7 @@ def make_srdf(
     pieces = meshes or MeshPieces()
     srdf = default_srdf(robot)
     pairs = dict.fromkeys(_joined(robot), "Adjacent")
-    sampler = _Sampler(robot, srdf, pieces, np.random.default_rng(seed))
+    sampler = _Sampler(robot, srdf, pieces, np.random.default_rng(0))
     pairs |= dict.fromkeys(sampler.always(pairs), "Always")
     touching = sampler.ever(pairs, samples)
     solid = [link.name for link in robot.links if link.collisions]

@@ -69,12 +69,11 @@ class PageServer(viser.ViserServer):
     Everything else is inherited from viser, including its thread rules.
     """
 
-    def __init__(self, port: int, label: str | None = None, access: Access | None = None) -> None:
+    def __init__(self, port: int, access: Access | None = None) -> None:
         """Serve.
 
         Args:
             port: TCP port; 0 takes any free one, which `get_port` returns.
-            label: title of the page's panel.
             access: who may open the page; by default this machine alone.
 
         Raises:
@@ -89,7 +88,7 @@ class PageServer(viser.ViserServer):
         rich.reconfigure(quiet=True)
         listener = _listen(self.access.host, port)
         with _viser_serves_on(listener, self.channel, self.access) as guarded:
-            super().__init__(self.access.host, port, label=label, verbose=False)
+            super().__init__(self.access.host, port, verbose=False)
         if not guarded:
             self.stop()
             listener.close()
@@ -113,11 +112,9 @@ class PageServer(viser.ViserServer):
 
 
 @contextmanager
-def page_server(
-    port: int, label: str | None = None, access: Access | None = None
-) -> Iterator[PageServer]:
+def page_server(port: int, access: Access | None = None) -> Iterator[PageServer]:
     """Serve while the context lasts; see `PageServer`."""
-    server = PageServer(port, label, access)
+    server = PageServer(port, access)
     try:
         yield server
     finally:

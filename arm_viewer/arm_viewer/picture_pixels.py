@@ -25,6 +25,7 @@ _CHANNELS = {
 _METRES = {"16UC1": 1e-3, "32FC1": 1.0}
 """Unit of depth images (REP 118), by encoding. Near points are red, far points blue, unknown ones
 black."""
+SCALE_STEPS = 12
 
 
 def colours(picture: Picture, widest: int | None = None) -> NDArray[np.uint8]:
@@ -88,9 +89,9 @@ def value_at(picture: Picture, column: int, row: int) -> str:
     return " ".join(f"{name} {value}" for name, value in zip("RGBA", values, strict=False))
 
 
-def depth_scale(steps: int = 12) -> list[str]:
+def depth_scale() -> list[str]:
     """Return the colours of depth images from near to far, as CSS has them."""
-    ramp = np.linspace(1.0, 2.0, steps)[None, :]
+    ramp = np.linspace(1.0, 2.0, SCALE_STEPS)[None, :]
     return [f"rgb({r} {g} {b})" for r, g, b in _distance_colours(ramp)[0].tolist()]
 
 

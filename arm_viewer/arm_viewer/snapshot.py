@@ -191,16 +191,14 @@ class SimulationTime:
     Attributes:
         time_s: simulation time.
         factor: real-time factor over the last two seconds; 0 while the simulation is paused.
-        lag_s: how far simulation time fell behind wall time within `measured_s`, at least 0.
-        measured_s: length of the measurement in wall time: ten seconds, less at first and after a
-            pause.
+        lag_s: how far simulation time fell behind wall time in the last ten seconds, or since the
+            start or a pause, at least 0.
         received_s: when the last message of /clock arrived.
     """
 
     time_s: float
     factor: float
     lag_s: float
-    measured_s: float
     received_s: float
 
     def at(self, now_s: float) -> float:

@@ -25,7 +25,7 @@ FOREIGN = "http://evil.example"
 
 @pytest.fixture(scope="module")
 def server():
-    with page_server(port=0, label="test") as running:
+    with page_server(port=0) as running:
         yield running
 
 

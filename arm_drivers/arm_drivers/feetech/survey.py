@@ -1,6 +1,5 @@
 """Looks for the servos on a bus, at any of its baud rates; nothing moves and nothing is changed."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from arm_drivers.feetech.bus import FeetechBus
@@ -47,14 +46,13 @@ class FoundServo:
     position: int | None
 
 
-def find_servos(bus: FeetechBus, ids: Iterable[int] = IDS) -> tuple[FoundServo, ...]:
+def find_servos(bus: FeetechBus) -> tuple[FoundServo, ...]:
     """Return the servos that answer, by their id.
 
     Raises:
         PortError: the port has gone.
     """
-    asked = tuple(ids)
-    setups = bus.read_all(asked, 0, SETUP_COUNT)
+    setups = bus.read_all(IDS, 0, SETUP_COUNT)
     # A servo that is silent costs the whole time, so only those that answer are asked again.
     motions = bus.read_all(tuple(setups), POSITION.address, MOTION_COUNT) if setups else {}
     found: list[FoundServo] = []

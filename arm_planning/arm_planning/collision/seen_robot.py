@@ -1,9 +1,8 @@
 """Which points of a depth camera show the robot itself."""
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,21 +28,18 @@ class SeenRobot:
     Collision shapes are often smaller than what a camera sees. Not thread-safe.
     """
 
-    def __init__(
-        self, urdf: str, padding_m: float = PADDING_M, package_path: Sequence[Path] = ()
-    ) -> None:
+    def __init__(self, urdf: str, padding_m: float = PADDING_M) -> None:
         """Read the robot and its meshes; what it looks like is left out where it cannot be used.
 
         Args:
             urdf: the robot's text.
             padding_m: by which each shape is grown.
-            package_path: folders with packages, besides those that the description names.
 
         Raises:
             DescriptionError: the URDF cannot be used.
             PlanningError: a collision shape cannot be used.
         """
-        meshes = MeshPieces(ResourceFinder.of_description(urdf, package_path))
+        meshes = MeshPieces(ResourceFinder.of_description(urdf))
         robot = parse_urdf(urdf)
         robot = replace(robot, links=tuple(_as_seen(link, meshes) for link in robot.links))
         model = planning_model(robot, Srdf(robot.name), warn=_logger.debug)

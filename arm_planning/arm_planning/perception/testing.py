@@ -22,6 +22,8 @@ RADII_M, CYLINDER_HEIGHTS_M = (0.012, 0.040), (0.030, 0.180)
 SIDES_M, BOX_HEIGHTS_M = (0.025, 0.090), (0.030, 0.150)
 MOST_THINGS = 6
 FAR_M = 10.0
+FROM_M, GAP_M = 0.7, 0.005
+"""How far the camera is from the table, and things from each other at least."""
 MARGIN = 3
 """Pixels between a thing and the picture's edge."""
 CENTRE_M, SIZE_SHARE = 0.005, 0.1
@@ -111,9 +113,9 @@ class DepthCamera:
         return bool((across & down & (z > 0)).all())
 
 
-def camera_at(angle: float, distance: float = 0.7) -> DepthCamera:
-    """Return 640x480 pixels that look at the origin from an angle above the table, in rad."""
-    pose = RigidTransform((-distance * cos(angle), 0.0, distance * sin(angle)))
+def camera_at(angle: float) -> DepthCamera:
+    """Return 640x480 pixels that look at the origin from an angle above the table."""
+    pose = RigidTransform((-FROM_M * cos(angle), 0.0, FROM_M * sin(angle)))
     return DepthCamera(
         640, 480, 1.0756, pose.then(_looking_down(angle)), (-0.15, -0.15), (0.15, 0.15)
     )
@@ -131,15 +133,13 @@ def _looking_down(angle: float) -> RigidTransform:
     return pitch.then(RigidTransform(rotation=(-0.5, 0.5, -0.5, 0.5)))
 
 
-def random_table(
-    random: np.random.Generator, camera: DepthCamera, gap_m: float = 0.005
-) -> tuple[TableThing, ...]:
-    """Return one to six things wholly in the picture, with at least a gap between them."""
+def random_table(random: np.random.Generator, camera: DepthCamera) -> tuple[TableThing, ...]:
+    """Return one to six things wholly in the picture, with a gap of GAP_M at least between them."""
     things: list[TableThing] = []
     count = int(random.integers(1, MOST_THINGS + 1))
     while len(things) < count:
         thing = _random_thing(random, camera)
-        if camera.has_in_picture(thing) and all(_gap(thing, other) >= gap_m for other in things):
+        if camera.has_in_picture(thing) and all(_gap(thing, other) >= GAP_M for other in things):
             things.append(thing)
     return tuple(things)
 

@@ -84,7 +84,7 @@ def report_fault(name: str, error: Exception) -> str:
     return f"{name} has a fault, please report it: {type(error).__name__}: {error}"
 
 
-def fill_error(message: Any, code: MoveItErrorCode, sentence: str = "") -> None:
+def fill_error(message: Any, code: MoveItErrorCode, sentence: str) -> None:
     """Fill the error code of an answer or result; one that has none stays as it is."""
     inner = next((getattr(message, name) for name in HOLDERS if hasattr(message, name)), message)
     if hasattr(inner, "error_code"):

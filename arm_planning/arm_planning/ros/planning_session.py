@@ -101,15 +101,15 @@ class PlanningSession:
 
     def scene_for(
         self,
-        diff: SceneMessage | None = None,
+        diff: SceneMessage | None,
         *,
-        from_present: bool = False,
-        interrupted: Callable[[], bool] = never,
+        from_present: bool,
+        interrupted: Callable[[], bool],
     ) -> tuple[PlanningScene, str]:
         """Return the scene to plan in, the present one with changes, and a remark on it, or "".
 
         Args:
-            diff: the changes; never a whole scene, whatever it says of itself.
+            diff: the changes, if any; never a whole scene, whatever it says of itself.
             from_present: whether the robot stays where it is, because it moves at once.
             interrupted: tells when waiting for joint states is to end early.
 

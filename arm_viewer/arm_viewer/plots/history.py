@@ -118,9 +118,7 @@ class Curves:
     Whoever has samples appends them, live or from a file; the page sends its browsers what is new.
     """
 
-    def __init__(self, capacity: int = CAPACITY) -> None:
-        """Keep at most `capacity` samples of each curve."""
-        self._capacity = capacity
+    def __init__(self) -> None:
         self._lock = threading.Lock()
         self._histories: dict[str, History] = {}
 
@@ -135,7 +133,7 @@ class Curves:
             for name, values in columns.items():
                 history = self._histories.get(name)
                 if history is None:
-                    history = self._histories[name] = History(self._capacity)
+                    history = self._histories[name] = History()
                 history.append(times, values)
 
     def since(self, name: str, time_s: float) -> CurveSamples:

@@ -129,17 +129,17 @@ def _numbers(
     offsets = entries[:, 1].astype(np.int64)
     fits = offsets + _DATA_OFFSET + size <= len(data)
     records = offsets[fits]
-    lengths = _gather(data, records + 1, 8).view("<u8")[:, 0]
+    lengths = _gather(data, records + 1).view("<u8")[:, 0]
     same_size = lengths == MESSAGE_HEADER.size + size
     starts = records[same_size] + _DATA_OFFSET
     times_ns = entries[fits, 0][same_size]
     fixed = np.flatnonzero(layout.is_fixed)
     same = (data[starts[:, None] + fixed] == layout.pattern[fixed]).all(axis=1)
     starts = starts[same]
-    numbers = [_gather(data, starts + place.offset, 8).view("<f8")[:, 0] for place in places]
+    numbers = [_gather(data, starts + place.offset).view("<f8")[:, 0] for place in places]
     return times_ns[same], np.array(numbers), len(entries) - len(starts)
 
 
-def _gather(data: NDArray[np.uint8], starts: NDArray[np.int64], size: int) -> NDArray[np.uint8]:
-    """Return `size` bytes from each start (n, size), contiguous."""
-    return np.ascontiguousarray(data[starts[:, None] + np.arange(size)])
+def _gather(data: NDArray[np.uint8], starts: NDArray[np.int64]) -> NDArray[np.uint8]:
+    """Return eight bytes from each start (n, 8), contiguous."""
+    return np.ascontiguousarray(data[starts[:, None] + np.arange(8)])

@@ -93,6 +93,5 @@ class ClockComparison:
             time_s=last_s,
             factor=(last_s - recent_s) / passed_s if passed_s > 0.0 else 0.0,
             lag_s=max(0.0, (last_wall_s - first_wall_s) - (last_s - first_s)),
-            measured_s=last_wall_s - first_wall_s,
             received_s=last_wall_s,
         )

@@ -241,7 +241,7 @@ class RecordedState:
         if clock is None:
             return None
         time_s = clock.clock.sec + 1e-9 * clock.clock.nanosec
-        return SimulationTime(time_s, speed, 0.0, 0.0, now_s)
+        return SimulationTime(time_s, speed, 0.0, now_s)
 
     def _named(self, message_class: type, suffix: str) -> list[str]:
         """Return the topics of a type whose names have an ending."""

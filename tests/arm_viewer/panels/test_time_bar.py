@@ -31,7 +31,7 @@ def snapshot(state="playing", speed=1.0, factor=1.0, lag_s=0.0, heard_s=NOW_S, *
     return Snapshot(
         made_s=NOW_S,
         run=RunStatus(state, speed, more.pop("snapshots", ())),
-        time=SimulationTime(12.25, factor, lag_s, 10.0, heard_s),
+        time=SimulationTime(12.25, factor, lag_s, heard_s),
         **more,
     )
 
