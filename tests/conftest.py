@@ -75,11 +75,12 @@ def _free_hung_workers() -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """Collect without looking for garbage: what is collected stays until the end."""
+    """Collect without looking for garbage, then or later: what is collected stays until the end."""
     gc.disable()
     try:
         return (yield)
     finally:
+        gc.freeze()
         gc.enable()
 
 
