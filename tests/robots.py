@@ -31,6 +31,13 @@ def box(*kinds: str, size: float = 0.1) -> str:
     return "".join(f"<{kind}>{shape}</{kind}>" for kind in kinds or ("visual", "collision"))
 
 
+def collision(kind: str, xyz: str = "0 0 0", **sizes: str) -> str:
+    """A primitive that a link touches; its sizes are those of the URDF."""
+    size = " ".join(f"{name}='{value}'" for name, value in sizes.items())
+    shape = f"<geometry><{kind} {size}/></geometry>"
+    return f"<collision><origin xyz='{xyz}'/>{shape}</collision>"
+
+
 def joint(
     name: str,
     parent: str,

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from ament_index_python.packages import get_package_share_directory
+from robots import joint, link, robot
 
 from arm_controller.pose import (
     Limits,
@@ -46,21 +47,13 @@ def test_refuses_what_is_no_pose(values, message):
         read_pose(values, JOINTS)
 
 
-ROBOT = """
-<robot name="small">
-  <link name="base"/> <link name="a"/> <link name="b"/> <link name="c"/> <link name="d"/>
-  <joint name="turn" type="revolute">
-    <parent link="base"/> <child link="a"/>
-    <limit lower="-2.57" upper="2" effort="5" velocity="0.1"/>
-  </joint>
-  <joint name="slide" type="prismatic">
-    <parent link="a"/> <child link="b"/>
-    <limit lower="0" upper="0.3" effort="5" velocity="0.5"/>
-  </joint>
-  <joint name="wheel" type="continuous"> <parent link="b"/> <child link="c"/> </joint>
-  <joint name="glue" type="fixed"> <parent link="c"/> <child link="d"/> </joint>
-</robot>
-"""
+ROBOT = robot(
+    *map(link, ("base", "a", "b", "c", "d")),
+    joint("turn", "base", "a", limits=(-2.57, 2.0), velocity=0.1),
+    joint("slide", "a", "b", kind="prismatic", limits=(0.0, 0.3), velocity=0.5),
+    joint("wheel", "b", "c", kind="continuous", limits=None),
+    joint("glue", "c", "d", kind="fixed", limits=None),
+)
 NAMES = ("slide", "turn", "wheel")
 
 

@@ -4,6 +4,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from robots import collision, joint, link, robot
 
 from arm_description.urdf.parser import parse_urdf
 from arm_description.urdf.robot import Box, Cylinder, Sphere
@@ -16,20 +17,14 @@ from arm_planning.scene.objects import AttachedBody, CollisionObject, PlacedShap
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.shapes import Cone, Plane, TriangleMesh
 
-URDF = """
-<robot name="crane">
-  <link name="base"/>
-  <link name="arm">
-    <collision><origin xyz="0.5 0 0"/><geometry><box size="1 0.2 0.2"/></geometry></collision>
-  </link>
-  <joint name="turn" type="revolute">
-    <parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
-    <limit lower="-3" upper="3" velocity="1" effort="1"/>
-  </joint>
-</robot>
-"""
-ROBOT = parse_urdf(URDF)
-MODEL = planning_model(ROBOT, parse_srdf('<robot name="crane"/>', ROBOT))
+ROBOT = parse_urdf(
+    robot(
+        link("base"),
+        link("arm", collision("box", xyz="0.5 0 0", size="1 0.2 0.2")),
+        joint("turn", "base", "arm", axis="0 0 1"),
+    )
+)
+MODEL = planning_model(ROBOT, parse_srdf("<robot name='r'/>", ROBOT))
 AT = (5.0, 0.0, 0.0)
 TETRAHEDRON = TriangleMesh(
     np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]),

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from robots import collision, joint, link, robot
 
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.seen_robot import SeenRobot
@@ -9,18 +10,13 @@ from arm_planning.perception.table import find_things
 from arm_planning.perception.table_objects import Crop, objects_in_view
 from arm_planning.perception.testing import TableThing, is_found, look, noisy, tutorial_camera
 
-ROBOT = SeenRobot("""
-<robot name="post">
-  <link name="base"/>
-  <link name="arm">
-    <collision><origin xyz="0 0 0.15"/><geometry><box size="0.04 0.05 0.3"/></geometry></collision>
-  </link>
-  <joint name="slide" type="prismatic">
-    <parent link="base"/><child link="arm"/><axis xyz="1 0 0"/>
-    <limit lower="0" upper="1" velocity="1" effort="1"/>
-  </joint>
-</robot>
-""")
+ROBOT = SeenRobot(
+    robot(
+        link("base"),
+        link("arm", collision("box", xyz="0 0 0.15", size="0.04 0.05 0.3")),
+        joint("slide", "base", "arm", kind="prismatic", axis="1 0 0", limits=(0.0, 1.0)),
+    )
+)
 CAMERA = tutorial_camera()
 ARM = TableThing("box", (0.55, 0.0), 0.0, (0.04, 0.05, 0.3))
 """The arm as a camera sees it."""

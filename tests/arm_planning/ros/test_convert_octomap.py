@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from moveit_msgs.msg import PlanningScene as SceneMessage
 from moveit_msgs.msg import PlanningSceneComponents
+from robots import collision, joint, link, robot
 
 from arm_description.urdf.parser import parse_urdf
 from arm_node.rigid_transform import RigidTransform
@@ -22,18 +23,14 @@ from arm_planning.scene.octree import Cubes
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import change_scene
 
-URDF = """
-<robot name="slider">
-  <link name="base"/>
-  <link name="ball"><collision><geometry><sphere radius="0.05"/></geometry></collision></link>
-  <joint name="slide" type="prismatic">
-    <parent link="base"/><child link="ball"/><axis xyz="1 0 0"/>
-    <limit lower="0" upper="2" velocity="1" effort="1"/>
-  </joint>
-</robot>
-"""
-ROBOT = parse_urdf(URDF)
-MODEL = planning_model(ROBOT, parse_srdf('<robot name="slider"/>', ROBOT))
+ROBOT = parse_urdf(
+    robot(
+        link("base"),
+        link("ball", collision("sphere", radius="0.05")),
+        joint("slide", "base", "ball", kind="prismatic", axis="1 0 0", limits=(0.0, 2.0)),
+    )
+)
+MODEL = planning_model(ROBOT, parse_srdf("<robot name='r'/>", ROBOT))
 SCENE = PlanningScene({"slide": 0.0})
 CELLS = np.array([[10, 0, 0], [10, -1, 0], [11, 0, 0]])
 MAP = OccupancyMap(0.1, Cubes(CELLS, np.ones(3, np.int64)), RigidTransform((0.2, 0.0, 0.0)))

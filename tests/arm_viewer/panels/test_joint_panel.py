@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from robots import joint, link, robot
 
 from arm_description.urdf.parser import parse_urdf
 from arm_viewer.panels.joint_panel import (
@@ -13,19 +14,15 @@ from arm_viewer.panels.joint_panel import (
     joint_ranges,
 )
 
-ROBOT = """<robot name='r'><link name='base'/><link name='a'/><link name='b'/><link name='c'/>
-  <link name='d'/><link name='e'/><link name='f'/>
-  <joint name='turn' type='revolute'><parent link='base'/><child link='a'/>
-    <limit lower='0.2' upper='2.0' effort='1' velocity='1'/></joint>
-  <joint name='wheel' type='continuous'><parent link='base'/><child link='b'/></joint>
-  <joint name='push' type='prismatic'><parent link='base'/><child link='c'/>
-    <limit lower='0' upper='0.05' effort='1' velocity='1'/></joint>
-  <joint name='finger' type='prismatic'><parent link='base'/><child link='d'/>
-    <limit lower='0' upper='0.05' effort='1' velocity='1'/><mimic joint='push'/></joint>
-  <joint name='stuck' type='revolute'><parent link='base'/><child link='e'/>
-    <limit lower='0' upper='0' effort='1' velocity='1'/></joint>
-  <joint name='free' type='floating'><parent link='base'/><child link='f'/></joint>
-</robot>"""
+ROBOT = robot(
+    *map(link, ("base", "a", "b", "c", "d", "e", "f")),
+    joint("turn", "base", "a", limits=(0.2, 2.0)),
+    joint("wheel", "base", "b", kind="continuous", limits=None),
+    joint("push", "base", "c", kind="prismatic", limits=(0.0, 0.05)),
+    joint("finger", "base", "d", "<mimic joint='push'/>", kind="prismatic", limits=(0.0, 0.05)),
+    joint("stuck", "base", "e", limits=(0.0, 0.0)),
+    joint("free", "base", "f", kind="floating", limits=None),
+)
 
 
 def test_only_joints_with_a_position_of_their_own_and_room_have_one():
