@@ -1,6 +1,7 @@
 """Gravity, and mass and friction of things, are parameters of the node that serves the world."""
 
 import math
+from pathlib import Path
 
 import pytest
 from robots import crate
@@ -74,10 +75,23 @@ class World:
         assert answer.result.result == OK, answer
 
 
-@pytest.fixture
-def world(launch, client) -> World:
-    launch("camera:=none", "world:=objects").wait_until_ready()
-    return World(client)
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory) -> Path:
+    return tmp_path_factory.mktemp("run") / "moon.run"
+
+
+@pytest.fixture(scope="module")
+def running(launch_for_file, recording):
+    """A simulation that is recorded; the last test ends it."""
+    launched = launch_for_file("camera:=none", "world:=objects", f"record_run:={recording}")
+    launched.wait_until_ready()
+    return launched
+
+
+@pytest.fixture(scope="module")
+def world(running, client_for_file) -> World:
+    """The world of the simulation, which each test leaves as it was."""
+    return World(client_for_file)
 
 
 def test_parameters_follow_the_world_and_change_it(world):
@@ -115,17 +129,13 @@ def test_what_is_wrong_is_refused_with_a_reason_and_changes_nothing(world):
     assert world.get("entities.red_box.friction") == 0.8
 
 
-def test_a_run_over_ros_repeats_with_them(launch, client, tmp_path):
-    path = tmp_path / "moon.run"
-    running = launch("camera:=none", "world:=objects", f"record_run:={path}")
-    running.wait_until_ready()
-    world = World(client)
+def test_a_run_over_ros_repeats_with_them(world, running, recording):
     assert world.set(gravity=[0.5, 0.0, -3.0], entities__red_box__mass=0.05) == ""
     world.spawn("crate")
     assert world.set(entities__crate__friction=0.02) == ""
     world.reset(0)
     assert world.set(gravity=MOON) == ""
     running.stop()
-    result = Replay(RunFile(path)).run()
+    result = Replay(RunFile(recording)).run()
     assert result.difference is None
     assert result.periods > 0

@@ -84,20 +84,49 @@ def test_a_missing_world_is_refused_before_anything_starts(capsys):
     assert "the shipped worlds are empty, house, objects" in captured.err
 
 
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        (["gz_args:=-r -v 1 kitchen.sdf"], "no world 'kitchen'"),
+        (["gz_args:=-r objects.sdf", "world:=/no/such/lab.xml"], "/no/such/lab.xml"),
+    ],
+)
+def test_a_missing_world_of_gazebo_s_arguments_is_refused_as_well(capsys, given, sentence):
+    assert main(["launch", "arm_gazebo", "arm_world.launch.py", "camera:=none", *given]) == 2
+    said = capsys.readouterr().err
+    assert sentence in said
+    assert "the shipped worlds are empty" in said
+
+
 def test_a_world_without_a_name_is_no_folder(capsys):
     assert main([*LINE, "model:=any.urdf", "world:="]) == 2
     assert "no world '': the name is empty, and the shipped worlds are" in capsys.readouterr().err
 
 
-def plan_of(name: str, **arguments: str):
+def plan_of(name: str, *, search: str = "/bin", **arguments: str):
     file = find_package("arm_gazebo") / "launch" / name
-    environ = {**os.environ, "PATH": "/bin"}
+    environ = {**os.environ, "PATH": search}
     return expand_description(read_launch_file(file), arguments, environ, file)
 
 
-def parameters_of(plan, name: str) -> str:
+def command_of(plan, name: str) -> tuple:
     (step,) = (step for step in plan.processes if step.name == name)
-    return "".join(word.text for word in step.command if isinstance(word, GeneratedFile))
+    return step.command
+
+
+def parameters_of(plan, name: str) -> str:
+    words = command_of(plan, name)
+    return "".join(word.text for word in words if isinstance(word, GeneratedFile))
+
+
+def test_rviz_opens_if_it_is_installed(tmp_path):
+    program = tmp_path / "rviz2"
+    program.touch(mode=0o755)
+    given = {"use_rviz": "true", "rviz_config_file": "/my/lab.rviz"}
+    plan = plan_of("arm_world.launch.py", search=f"{tmp_path}:/bin", **given)
+    words = (str(program), "-d", "/my/lab.rviz", "--ros-args", "-p", "use_sim_time:=true")
+    assert command_of(plan, "rviz2") == words
+    assert plan.warnings == ()
 
 
 def test_rviz_that_is_not_installed_is_a_warning_and_the_page():
@@ -217,6 +246,11 @@ def test_gazebos_words_without_r_start_paused():
     assert '"paused": true' in parameters_of(paused, "arm_gazebo_node")
     running = plan_of("arm_world.launch.py", gz_args="-r empty.sdf")
     assert '"paused": false' in parameters_of(running, "arm_gazebo_node")
+
+
+def test_gazebos_verbosity_is_the_log_level():
+    plan = plan_of("arm_gazebo.launch.py", gz_args="-r -v 1 empty.sdf")
+    assert command_of(plan, "arm_gazebo_node")[-2:] == ("--log-level", "error")
 
 
 def test_gui_is_the_window(monkeypatch):

@@ -1,5 +1,6 @@
 """The myCobot in the simulation, as a stranger's program uses it: topics, actions, launch files."""
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -89,43 +90,80 @@ def test_arm_and_gripper_move_by_topic_and_by_actions(launch, client, result_of)
     wait_for_pose(states, {prefixed(name, "left_"): -0.7 * k for name, k in FOLLOWERS.items()})
 
 
-def test_a_copy_has_actions_and_controllers_of_its_own(launch, client, result_of):
-    from action_msgs.msg import GoalStatus
-    from control_msgs.action import FollowJointTrajectory, GripperCommand
-    from controller_manager_msgs.srv import ListControllers, SwitchController, UnloadController
-    from sensor_msgs.msg import JointState
-
-    own, other = "mycobot_280_1", "mycobot_280_0"
-    launched = launch("mycobot", "copies:=2")
+@pytest.fixture(scope="class")
+def copies(launch_for_class):
+    """Two robots; the last test of the class ends them."""
+    launched = launch_for_class("mycobot", "copies:=2")
     launched.wait_until_ready()
-    states = {name: client.subscribe(JointState, f"/{name}/joint_states") for name in (own, other)}
-    target = trajectory(TARGET, 1, "")
-    target.joint_names = [f"{own}_{name}" for name in MYCOBOT_ARM]
-    follow = f"/{own}/arm_controller/follow_joint_trajectory"
-    followed = result_of(
-        FollowJointTrajectory, follow, FollowJointTrajectory.Goal(trajectory=target)
-    )
-    assert followed.status == GoalStatus.STATUS_SUCCEEDED
-    wait_for_pose(states[own], dict(zip(target.joint_names, TARGET, strict=True)))
+    return launched
 
-    close = GripperCommand.Goal()
-    close.command.position, close.command.max_effort = -0.5, 5.0
-    gripped = result_of(GripperCommand, f"/{own}/gripper_action_controller/gripper_cmd", close)
-    assert gripped.status == GoalStatus.STATUS_SUCCEEDED
-    states[other].clear()
-    assert max(map(abs, states[other].wait_for()[-1].position)) < 0.005
 
-    manager = f"/{own}/controller_manager"
-    stop = SwitchController.Request(deactivate_controllers=["arm_controller"], strictness=2)
-    assert client.call(SwitchController, f"{manager}/switch_controller", stop).ok
-    unload = UnloadController.Request(name="arm_controller")
-    assert client.call(UnloadController, f"{manager}/unload_controller", unload).ok
-    for name, count in ((own, 2), (other, 3)):
-        service = f"/{name}/controller_manager/list_controllers"
-        listed = client.call(ListControllers, service, ListControllers.Request()).controller
-        assert [controller.state for controller in listed] == ["active"] * count
-    assert launched.stop() == 0
-    assert "Traceback" not in launched.output
+class TestTwoCopies:
+    def test_copies_serve_goals_and_queries_without_a_busy_thread(self, copies, client, result_of):
+        from control_msgs.action import FollowJointTrajectory
+        from control_msgs.srv import QueryTrajectoryState
+
+        (simulation,) = copies.processes("arm_gazebo_node")
+        controller = "/mycobot_280_1/arm_controller"
+
+        def positions():
+            request = QueryTrajectoryState.Request()
+            return client.call(QueryTrajectoryState, f"{controller}/query_state", request)
+
+        start = positions()
+        assert start.name[0] == "mycobot_280_1_link1_to_link2"
+        target = [0.3, *start.position[1:]]
+        way = trajectory(target, 3, "")
+        way.joint_names = start.name
+        before, began_s = simulation.cpu_times(), time.monotonic()
+        answer = result_of(
+            FollowJointTrajectory,
+            f"{controller}/follow_joint_trajectory",
+            FollowJointTrajectory.Goal(trajectory=way),
+        )
+        spent, lasted_s = simulation.cpu_times(), time.monotonic() - began_s
+        assert answer.result.error_string == "Goal successfully reached!"
+        assert positions().position == pytest.approx(target, abs=0.02)
+        # Two arms at 100 Hz take less than a tenth of a core; a thread that polls takes one.
+        assert spent.user + spent.system - before.user - before.system < 0.5 * lasted_s
+
+    def test_a_copy_has_actions_and_controllers_of_its_own(self, copies, client, result_of):
+        from action_msgs.msg import GoalStatus
+        from control_msgs.action import FollowJointTrajectory, GripperCommand
+        from controller_manager_msgs.srv import ListControllers, SwitchController, UnloadController
+        from sensor_msgs.msg import JointState
+
+        own, other = "mycobot_280_1", "mycobot_280_0"
+        states = {
+            name: client.subscribe(JointState, f"/{name}/joint_states") for name in (own, other)
+        }
+        target = trajectory(TARGET, 1, "")
+        target.joint_names = [f"{own}_{name}" for name in MYCOBOT_ARM]
+        follow = f"/{own}/arm_controller/follow_joint_trajectory"
+        followed = result_of(
+            FollowJointTrajectory, follow, FollowJointTrajectory.Goal(trajectory=target)
+        )
+        assert followed.status == GoalStatus.STATUS_SUCCEEDED
+        wait_for_pose(states[own], dict(zip(target.joint_names, TARGET, strict=True)))
+
+        close = GripperCommand.Goal()
+        close.command.position, close.command.max_effort = -0.5, 5.0
+        gripped = result_of(GripperCommand, f"/{own}/gripper_action_controller/gripper_cmd", close)
+        assert gripped.status == GoalStatus.STATUS_SUCCEEDED
+        states[other].clear()
+        assert max(map(abs, states[other].wait_for()[-1].position)) < 0.005
+
+        manager = f"/{own}/controller_manager"
+        stop = SwitchController.Request(deactivate_controllers=["arm_controller"], strictness=2)
+        assert client.call(SwitchController, f"{manager}/switch_controller", stop).ok
+        unload = UnloadController.Request(name="arm_controller")
+        assert client.call(UnloadController, f"{manager}/unload_controller", unload).ok
+        for name, count in ((own, 2), (other, 3)):
+            service = f"/{name}/controller_manager/list_controllers"
+            listed = client.call(ListControllers, service, ListControllers.Request()).controller
+            assert [controller.state for controller in listed] == ["active"] * count
+        assert copies.stop() == 0
+        assert "Traceback" not in copies.output
 
 
 def test_the_description_alone_shows_the_robot_without_gripper(launch, client):

@@ -13,6 +13,7 @@ pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 
 CAMERA = "none"
 SIZES = {"desk": DESK, "phone": PHONE}
+on_each = pytest.mark.parametrize("world", SIZES, indirect=True)
 CONTACT = re.compile("Playing|Clock only|No answer|No simulation")
 DROP = """([name, data]) => {
   const files = new DataTransfer();
@@ -48,11 +49,11 @@ def page(page_at, simulation, page_url):
     return opened
 
 
-@pytest.fixture(params=SIZES)
+@pytest.fixture
 def world(page, request, client_for_file):
-    """Return the tab in a window of each size."""
+    """Return the tab in a window of a size, a desk's unless the test says otherwise."""
     tab = World(page, client_for_file)
-    tab.resize(SIZES[request.param])
+    tab.resize(SIZES[getattr(request, "param", "desk")])
     page.get_by_role("tab", name="World", exact=True).click()
     return tab
 
@@ -111,6 +112,7 @@ class World(PageUser):
         return state.pose.position
 
 
+@on_each
 def test_a_box_is_added_pushed_moved_and_deleted(world):
     world.unfold("Add", "Add")
     world.enter("Position", "0.3 0.1 0.03")
@@ -200,6 +202,7 @@ def test_a_wrong_field_is_a_sentence(world):
     assert world.thing("box").count() == 0
 
 
+@on_each
 def test_a_file_is_dropped_and_its_check_shown(world):
     world.drop("post.urdf", POST)
     world.thing("post").wait_for()
@@ -211,14 +214,13 @@ def test_a_file_is_dropped_and_its_check_shown(world):
 
 
 def test_a_broken_file_and_one_of_another_kind_are_refused(world):
-    # Its check takes a second or more, and what it says would hide what the next test waits for.
-    name = f"broken_{world.page.viewport_size['width']}.urdf"
-    world.drop(name, b"<robot name='x'><link name='a'></robot>")
-    world.shows(f"{name} cannot be simulated")
+    world.drop("broken.urdf", b"<robot name='x'><link name='a'></robot>")
+    world.shows("broken.urdf cannot be simulated")
     world.drop("photo.png", b"x")
     assert world.says("photo.png is not a URDF, SDF or STL file", is_problem=True)
 
 
+@on_each
 def test_another_world_is_loaded(world):
     from simulation_interfaces.srv import GetCurrentWorld
 
