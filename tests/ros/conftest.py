@@ -4,8 +4,6 @@ Nothing here sleeps: every wait is on a condition, with a generous timeout.
 """
 
 import os
-import signal
-import subprocess
 import sys
 import threading
 import time
@@ -61,25 +59,24 @@ def _launcher(folder: Path) -> Iterator[Callable[..., Program]]:
 
 
 @pytest.fixture(scope="module")
-def simulate(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[dict], None]]:
+def simulate(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[dict], Program]]:
     """Run the simulation alone with these parameters by node; it ends with the file's last test."""
-    started: list[subprocess.Popen[bytes]] = []
+    started: list[Program] = []
 
-    def start(parameters: dict[str, dict]) -> None:
+    def start(parameters: dict[str, dict]) -> Program:
         path = tmp_path_factory.mktemp("simulation") / "parameters.yaml"
         nodes = {node: {"ros__parameters": values} for node, values in parameters.items()}
         path.write_text(yaml.safe_dump(nodes))
         command = [sys.executable, "-m", "arm_gazebo.arm_gazebo_node"]
-        started.append(subprocess.Popen([*command, "--ros-args", "--params-file", str(path)]))
+        started.append(Program([*command, "--ros-args", "--params-file", path]))
+        return started[-1]
 
     yield start
-    for process in started:
-        process.send_signal(signal.SIGINT)
     try:
-        assert [process.wait(WAIT_TIMEOUT_S) for process in started] == [0] * len(started)
+        assert [program.stop() for program in started] == [0] * len(started)
     finally:
-        for process in started:
-            process.kill()
+        for program in started:
+            program.close()
 
 
 class Collector:
@@ -165,6 +162,8 @@ class Client:
         self.node = first_node(lambda: Node("test_client", context=self.context))
         self.executor = SingleThreadedExecutor(context=self.context)
         self._actions: list[Any] = []
+        self._callers: dict[tuple[type, str], Any] = {}
+        self._known: dict[Any, set[object]] = {}
         self.executor.add_node(self.node)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._spin, daemon=True)
@@ -207,12 +206,28 @@ class Client:
         return publisher
 
     def call(self, service_type: type, name: str, request: object, timeout_s: float = 30.0):
-        """Call a service once it is available; return its answer."""
-        client = self.node.create_client(service_type, name)
+        """Call a service once it is available; return its answer.
+
+        It must be discovered only once: the next call of the service has the same client.
+        """
+        client = self._callers.get((service_type, name))
+        if client is None:
+            client = self.node.create_client(service_type, name)
+            self._callers[service_type, name] = client
         if not client.wait_for_service(timeout_sec=timeout_s):
             pytest.fail(f"no service {name} within {timeout_s} s")
-        self.be_known_to_server(client.service_name)
+        ends = self._ends_of(client)
+        if ends != self._known.get(client):
+            self.be_known_to_server(client.service_name)
+            self._known[client] = ends
         return self.result_of(client.call_async(request), name, timeout_s)
+
+    def _ends_of(self, client: Any) -> set[object]:
+        """Return all that a service's server must have discovered, and what that server is."""
+        topic, node = f"rq{client.service_name}Request", self.node
+        servers = node.get_subscriptions_info_by_topic(topic, True)
+        own = (*node.publishers, *node.subscriptions, *node.clients, *node.services)
+        return {*map(id, own), *(bytes(server.endpoint_gid) for server in servers)}
 
     def action(self, action_type: type, name: str, timeout_s: float = WAIT_TIMEOUT_S) -> Any:
         """Return a client of an action whose server has discovered all of it."""
@@ -271,6 +286,9 @@ class Client:
         yield self
 
         def destroy_new() -> None:
+            for service, caller in list(self._callers.items()):
+                if caller not in before["clients"]:
+                    del self._callers[service]
             for kind, destroy in kinds.items():
                 for each in list(getattr(self.node, kind)):
                     if each not in before[kind]:
