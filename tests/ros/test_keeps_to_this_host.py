@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from programs import Program
 
 from arm_cli.doctor.diagnosis import Severity
 from arm_cli.doctor.network import check_listening, find_listeners
@@ -140,15 +141,12 @@ def _wait_until_running(host: Host, end: str) -> None:
 
 def _expect_datagrams(here: Host, there: Host) -> None:
     """Prove the cable without ROS: a plain datagram crosses and comes back."""
-    echo = subprocess.Popen(
-        here.inside([sys.executable, "-c", ECHO]), stdout=subprocess.PIPE, text=True
-    )
+    echo = Program(here.inside([sys.executable, "-c", ECHO]))
     try:
-        _wait_for(echo, "echo runs")
+        echo.wait_for_line("echo runs")
         _run(*there.inside([sys.executable, "-c", ASK_FOR_ECHO]))
     finally:
-        echo.kill()
-        echo.communicate()
+        echo.close(signal.SIGKILL)
 
 
 @pytest.fixture
@@ -172,40 +170,21 @@ def hosts() -> Iterator[tuple[Host, Host]]:
 
 
 @pytest.fixture
-def background() -> Iterator[Callable[..., "subprocess.Popen[str]"]]:
-    """Start a command with piped output, which is interrupted after the test."""
-    started: list[subprocess.Popen[str]] = []
+def background() -> Iterator[Callable[..., Program]]:
+    """Start a program, which is interrupted after the test."""
+    started: list[Program] = []
 
-    def start(command: list[str], **environment: str) -> "subprocess.Popen[str]":
-        process = subprocess.Popen(
-            command,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            env={**_without_discovery(), **environment},
-        )
-        started.append(process)
-        return process
+    def start(command: list[str], **environment: str) -> Program:
+        started.append(Program(command, {**_without_discovery(), **environment}))
+        return started[-1]
 
     yield start
-    for process in started:
-        process.send_signal(signal.SIGINT)
-    for process in started:
-        process.communicate(timeout=TIMEOUT_S)
+    for program in started:
+        program.close()
 
 
 def _without_discovery() -> dict[str, str]:
     return {k: v for k, v in os.environ.items() if k != "ROS_AUTOMATIC_DISCOVERY_RANGE"}
-
-
-def _wait_for(process: "subprocess.Popen[str]", text: str) -> None:
-    assert process.stdout is not None
-    seen: list[str] = []
-    for line in process.stdout:
-        seen.append(line)
-        if text in line:
-            return
-    pytest.fail(f"no line with {text!r}:\n{''.join(seen)}")
 
 
 @pytest.mark.workaround("local_profile")
@@ -213,7 +192,7 @@ def _wait_for(process: "subprocess.Popen[str]", text: str) -> None:
     not can_make_hosts(), reason="network namespaces need root, iproute2 and util-linux"
 )
 def test_another_host_that_names_this_one_receives_and_moves_nothing(
-    hosts: tuple[Host, Host], background: Callable[..., "subprocess.Popen[str]"], tmp_path: Path
+    hosts: tuple[Host, Host], background: Callable[..., Program], tmp_path: Path
 ) -> None:
     here, there = hosts
     file = tmp_path / "both.launch.py"
@@ -221,11 +200,11 @@ def test_another_host_that_names_this_one_receives_and_moves_nothing(
     arm = [sys.executable, "-m", "arm_cli", "launch"]
     log = {"ROS_LOG_DIR": str(tmp_path)}
     open_node = background(here.inside([sys.executable, "-c", OPEN_NODE]))
-    _wait_for(open_node, "open node runs")
+    open_node.wait_for_line("open node runs")
     own = background(here.inside([*arm, str(file)]), **log)
-    _wait_for(own, "own node runs")
+    own.wait_for_line("own node runs")
     launched = background(here.inside([*arm, "camera:=none"]), **log)
-    _wait_for(launched, "ready ")
+    launched.wait_until_ready()
     intruder = subprocess.run(
         there.inside([sys.executable, "-c", INTRUDER]),
         # The profile has it ask for 64 participants of the other host, not only for the first four.

@@ -2,7 +2,6 @@
 
 import os
 import signal
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
@@ -10,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from programs import RosProgram
 
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
@@ -19,39 +19,21 @@ pytestmark = pytest.mark.ros
 TIMEOUT_S = 60.0
 
 
-def arm(*words: str, **options) -> "subprocess.Popen[str]":
+def arm(*words: str) -> RosProgram:
     """Start a verb of `arm`."""
-    return subprocess.Popen(
-        [sys.executable, "-m", "arm_cli", *words],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        stdin=subprocess.DEVNULL,
-        text=True,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"},
-        **options,
-    )
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    return RosProgram([sys.executable, "-m", "arm_cli", *words], environment)
 
 
 @contextmanager
-def record_verb(path: Path) -> "Iterator[subprocess.Popen[str]]":
+def record_verb(path: Path) -> Iterator[RosProgram]:
     """Record with `arm sim record`, and make sure that it is gone afterwards."""
     verb = arm("sim", "record", str(path))
     try:
-        assert verb.stdout is not None
-        assert "recording to" in verb.stdout.readline()
+        verb.wait_for_line("recording to")
         yield verb
     finally:
-        if verb.poll() is None:
-            verb.kill()
-            verb.communicate()
-
-
-def interrupt(verb: "subprocess.Popen[str]") -> str:
-    """Interrupt it, which it must take as a success; return what it says."""
-    verb.send_signal(signal.SIGINT)
-    printed, _ = verb.communicate(timeout=TIMEOUT_S)
-    assert verb.returncode == 0, printed
-    return printed
+        verb.close()
 
 
 def move(client, commands, states, *positions: float) -> None:
@@ -133,11 +115,11 @@ def test_a_recording_is_refused_in_a_sentence_and_begins_and_ends_by_a_parameter
 
     with record_verb(tmp_path / "verb.run") as verb:
         move(client, commands, states, 0.5, 0.2, 0.1, 0.3)
-        assert "control periods in" in interrupt(verb)
+        assert verb.stop() == 0
+        assert "control periods in" in verb.output
     replay = arm("sim", "replay", str(tmp_path / "verb.run"))
-    printed, _ = replay.communicate(timeout=TIMEOUT_S)
-    assert replay.returncode == 0, printed
-    assert "control periods are equal" in printed
+    assert "control periods are equal" in replay.succeed()
+    replay.close()
 
 
 @pytest.mark.parametrize("is_gone", [True, False], ids=["before", "meanwhile"])
@@ -148,4 +130,5 @@ def test_a_recording_ends_with_its_simulation(launch, tmp_path, is_gone):
         running.process.send_signal(signal.SIGINT)
         if is_gone:
             running.wait()
-        assert "control periods in" in interrupt(verb)
+        assert verb.stop() == 0
+        assert "control periods in" in verb.output

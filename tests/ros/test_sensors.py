@@ -1,9 +1,5 @@
 """Sensors of one robot over real ROS: cameras of each type, IMU, force-torque, contact."""
 
-import signal
-import subprocess
-import sys
-import threading
 from typing import Any
 
 import numpy as np
@@ -86,44 +82,11 @@ ft_broadcaster: {ros__parameters: {sensor_name: wrist, frame_id: tool}}
 
 
 @pytest.fixture(scope="module")
-def lab(tmp_path_factory):
+def lab(simulate):
     """A robot with all kinds of sensors, running; its boxes' faces are 0.95 m from its cameras."""
-    folder = tmp_path_factory.mktemp("lab")
-    robot, controllers = folder / "robot.yaml", folder / "controllers.yaml"
     settings = {"robot_description": URDF, "spawn": ",".join(SPAWNED)}
-    robot.write_text(yaml.safe_dump({"arm_gazebo": {"ros__parameters": settings}}))
-    controllers.write_text(CONTROLLERS)
-    process = subprocess.Popen(
-        [
-            *(sys.executable, "-m", "arm_gazebo.arm_gazebo_node", "--ros-args"),
-            *("--params-file", str(robot), "--params-file", str(controllers)),
-        ],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-    assert process.stdout is not None
-    try:
-        wait_for_line(process.stdout, f"activated {SPAWNED[-1]}")
-        rest = threading.Thread(target=process.stdout.read)
-        rest.start()
-        yield
-        process.send_signal(signal.SIGINT)
-        process.wait(PATIENCE_S)
-    finally:
-        process.kill()
-    rest.join()
-    process.stdout.close()
-
-
-def wait_for_line(output, text: str) -> None:
-    """Read until a line contains the text."""
-    lines = []
-    for line in output:
-        lines.append(line)
-        if text in line:
-            return
-    pytest.fail(f"no line with {text!r}: {''.join(lines)}")
+    nodes = {node: v["ros__parameters"] for node, v in yaml.safe_load(CONTROLLERS).items()}
+    simulate({"arm_gazebo": settings, **nodes}).wait_for_line(f"activated {SPAWNED[-1]}")
 
 
 def stamp_ns(message) -> int:

@@ -1,11 +1,10 @@
 """`arm launch gz_ros2_control_demos diff_drive_example.launch.py`: a robot that is driven."""
 
-import signal
-import subprocess
 import sys
 from math import atan2, cos, sin
 
 import pytest
+from programs import Program
 
 pytestmark = pytest.mark.ros
 
@@ -85,17 +84,16 @@ def test_the_example_drives_it_until_it_is_stopped(robot, client):
     from nav_msgs.msg import Odometry
 
     odometry = client.subscribe(Odometry, f"{DRIVE}/odom")
-    driver = subprocess.Popen([*EXAMPLE, "example_diff_drive"], stdin=subprocess.DEVNULL)
+    driver = Program([*EXAMPLE, "example_diff_drive"])
     try:
         odometry.wait_until(
             lambda m: any(goes_as_the_example_says(message.twist.twist) for message in m),
             "the robot goes as the example says",
             EXAMPLE_TIMEOUT_S,
         )
+        assert driver.stop(timeout_s=EXAMPLE_TIMEOUT_S) == 0
     finally:
-        driver.send_signal(signal.SIGINT)
-        code = driver.wait(EXAMPLE_TIMEOUT_S)
-    assert code == 0
+        driver.close()
     odometry.clear()
     odometry.wait_until(
         lambda m: bool(m) and abs(m[-1].twist.twist.linear.x) < 1e-3, "the robot stands"
