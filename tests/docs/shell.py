@@ -9,7 +9,10 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
+
+from forked import popen, words_of_arm
 
 TIMEOUT_S = 150.0
 """For a line: a busy machine simulates slower than time passes."""
@@ -65,6 +68,26 @@ def environment_of_reader() -> dict[str, str]:
     environment = {**os.environ, "PATH": search, "PYTHONUNBUFFERED": "1", "TERM": "dumb"}
     environment.pop("PYTEST_ADDOPTS", None)  # Of this run, not of those that pages show.
     return environment
+
+
+def ended(line: str, folder: Path) -> tuple[int, str]:
+    """Run a command that ends by itself; return its exit code and what it printed.
+
+    One of `arm` that needs no shell is forked from a process that has imported rclpy.
+    """
+    if words := words_of_arm(line):
+        program = popen(words, environment_of_reader(), cwd=folder)
+        overdue = threading.Timer(TIMEOUT_S, program.kill)
+        overdue.start()
+        with closing(program.stdout):
+            output = program.stdout.read()
+        overdue.cancel()
+        return program.wait(), output
+    running = Running(line, folder)
+    try:
+        return running.wait(), running.output
+    finally:
+        running.close()
 
 
 class Running:

@@ -9,7 +9,7 @@ import pytest
 import yaml
 from blocks import PAGES, Block, Command, blocks_of, commands_of
 from lxml import etree
-from shell import ANYTHING, INTERRUPT, Background, Running, as_in_peace, comparable, pattern
+from shell import ANYTHING, INTERRUPT, Background, Running, as_in_peace, comparable, ended, pattern
 
 LANGUAGES = {"console", "bash", "python", "yaml", "xml", "toml", "text", "dockerfile"}
 
@@ -38,6 +38,24 @@ def run(command: Command, block: Block, folder: Path, background: Background) ->
         background.start(command.line, command.output)
         return
     line = f"{command.line} --print" if how == "print" else command.line
+    if how == "typed" or INTERRUPT in command.output:
+        code, output = at_a_terminal(line, command, how, words, folder)
+    else:
+        code, output = ended(line, folder)
+    where = f"{block.place}: {line}\n{output}"
+    if INTERRUPT not in command.output and words != "any":
+        assert code == (int(words) if how == "exit" else 0), where
+    lines = [line for line in command.output if line != INTERRUPT]
+    if how != "print":
+        wanted = pattern(lines or [ANYTHING], how == "exact")
+        said = comparable(as_in_peace(output, lines), how == "exact")
+        assert wanted.fullmatch(said), where
+
+
+def at_a_terminal(
+    line: str, command: Command, how: str, words: str, folder: Path
+) -> tuple[int, str]:
+    """Type a command and what it asks for, or interrupt it; return its exit code and output."""
     running = Running(line, folder, terminal=how == "typed")
     try:
         if how == "typed":
@@ -47,18 +65,9 @@ def run(command: Command, block: Block, folder: Path, background: Background) ->
             before = command.output[: command.output.index(INTERRUPT)]
             running.wait_until_shown(list(before), exact=how == "exact")
             running.interrupt()
-        code = running.wait()
-        output = running.output
+        return running.wait(), running.output
     finally:
         running.close()
-    where = f"{block.place}: {line}\n{output}"
-    if INTERRUPT not in command.output and words != "any":
-        assert code == (int(words) if how == "exit" else 0), where
-    lines = [line for line in command.output if line != INTERRUPT]
-    if how != "print":
-        wanted = pattern(lines or [ANYTHING], how == "exact")
-        said = comparable(as_in_peace(output, lines), how == "exact")
-        assert wanted.fullmatch(said), where
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
@@ -93,10 +102,9 @@ def rows_of(kind: str) -> dict[str, str]:
 
 
 def listed(what: str, folder: Path) -> dict[str, str]:
-    running = Running(f"arm {what} list -t", folder)
-    assert running.wait() == 0
-    running.close()
-    names = [line for line in running.output.splitlines() if line.startswith("/")]
+    code, output = ended(f"arm {what} list -t", folder)
+    assert code == 0
+    names = [line for line in output.splitlines() if line.startswith("/")]
     lines = (line.replace("[", "").rstrip("]").split(" ") for line in names)
     return {line[0]: line[1] for line in lines}
 

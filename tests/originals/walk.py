@@ -3,14 +3,11 @@
 import re
 import time
 from collections.abc import Iterator
-from contextlib import closing
 from pathlib import Path
-from threading import Timer
 
 import pytest
-from forked import popen, words_of_arm
 from originals_table import COURSE, INTERRUPT, Row, Step, read_parts
-from shell import TIMEOUT_S, Running, comparable, environment_of_reader, pattern
+from shell import TIMEOUT_S, Running, comparable, ended, pattern
 
 ROWS = tuple(row for part in read_parts() for row in part.rows)
 ARRIVAL = "all(abs(dict(zip(m.name, m.position))[n] - q) < {within} for n, q in {wanted})"
@@ -93,7 +90,7 @@ class Walk:
         looked = self._read if OF_FILES.match(line) else self._looked
         while True:
             if line not in looked:
-                looked[line] = self._ended(line)
+                looked[line] = ended(line, self._folder)
             code, output = looked[line]
             missing = not_shown(step, output)
             if code == step.code and not missing:
@@ -102,23 +99,18 @@ class Walk:
             what = f"{line}: exit code {code}, {missing!r} is missing"
             assert time.monotonic() < deadline, f"{what}:\n{output}"
 
-    def _ended(self, line: str) -> tuple[int, str]:
-        if words := words_of_arm(line):
-            program = popen(words, environment_of_reader(), cwd=self._folder)
-            overdue = Timer(TIMEOUT_S, program.kill)
-            overdue.start()
-            with closing(program.stdout):
-                output = program.stdout.read()
-            overdue.cancel()
-            return program.wait(), output
-        running = Running(line, self._folder)
-        try:
-            return running.wait(), running.output
-        finally:
-            running.close()
-
     def _run(self, step: Step, page: str) -> None:
         line = typed_line(step, page)
+        if step.typed or INTERRUPT in step.shows:
+            code, output = self._at_a_terminal(line, step)
+        else:
+            code, output = ended(line, self._folder)
+        missing = not_shown(step, output)
+        assert not missing, f"{line}: no {missing!r}:\n{output}"
+        assert code == step.code, f"{line}: exit code {code}:\n{output}"
+        assert "Traceback" not in output, output
+
+    def _at_a_terminal(self, line: str, step: Step) -> tuple[int, str]:
         running = Running(line, self._folder, terminal=bool(step.typed))
         try:
             for words in step.typed:
@@ -129,13 +121,9 @@ class Walk:
                 if step.reaches:
                     self._wait_for_joints(step)
                 running.interrupt()
-            code = running.wait()
+            return running.wait(), running.output
         finally:
             running.close()
-        missing = not_shown(step, running.output)
-        assert not missing, f"{line}: no {missing!r}:\n{running.output}"
-        assert code == step.code, f"{line}: exit code {code}:\n{running.output}"
-        assert "Traceback" not in running.output, running.output
 
     def _wait_until_shown(self, step: Step, running: Running) -> None:
         running.wait_for(lambda output: not not_shown(step, output, interrupted=False), step.shows)
@@ -143,9 +131,9 @@ class Walk:
     def _wait_for_joints(self, step: Step) -> None:
         condition = ARRIVAL.format(wanted=list(step.reaches), within=WITHIN)
         line = f"arm topic echo {step.states} --once"
-        code, output = self._ended(f'{line} --filter "{condition}" --timeout {ARRIVAL_S:g}')
+        code, output = ended(f'{line} --filter "{condition}" --timeout {ARRIVAL_S:g}', self._folder)
         if code != 0:
-            now = self._ended(f"{line} --timeout {ARRIVAL_S:g}")[1]
+            now = ended(f"{line} --timeout {ARRIVAL_S:g}", self._folder)[1]
             pytest.fail(f"not at {step.reaches}: {output}\nbut:\n{now}")
 
     def end(self) -> None:
