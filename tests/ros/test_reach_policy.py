@@ -18,12 +18,13 @@ def test_the_policy_reaches_random_goals_over_ros(launch):
     launched = launch("camera:=none", "real_time_factor:=0.5")
     launched.wait_until_ready()
     done = subprocess.run(
-        [sys.executable, str(NODE), "--goals", "8", "--seed", "5"],
+        [sys.executable, str(NODE), "--goals", "4", "--seed", "5"],
         capture_output=True,
         text=True,
         timeout=TIMEOUT_S,
         check=False,
     )
-    said = re.search(r"(\d+) of 8 goals reached", done.stdout)
+    # How often it succeeds is tested without ROS.
+    said = re.search(r"(\d+) of 4 goals reached", done.stdout)
     assert said, done.stdout + done.stderr
-    assert int(said[1]) >= 7, done.stderr
+    assert int(said[1]) >= 3, done.stderr
