@@ -4,7 +4,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from arm_cli.errors import CommandUsageError
+from arm_cli.output import write_text
 from arm_node.drawing import Digraph, Shape, to_svg
 
 
@@ -77,15 +77,3 @@ def write_picture(graph: Digraph, stem: Path, downward: bool = False) -> Path:
     svg_file = stem.with_name(f"{stem.name}.svg")
     write_text(svg_file, to_svg(graph, downward))
     return svg_file
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file.
-
-    Raises:
-        CommandUsageError: the file cannot be written.
-    """
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise CommandUsageError(f"cannot write {path}: {error.strerror}") from error

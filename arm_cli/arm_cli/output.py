@@ -1,4 +1,4 @@
-"""Prints: no other module of `arm_cli` writes to stdout or stderr.
+"""Prints and writes files: no other module of `arm_cli` writes to stdout or stderr.
 
 Names and strings come from other processes, so all output is made safe for a terminal here.
 """
@@ -6,8 +6,10 @@ Names and strings come from other processes, so all output is made safe for a te
 import math
 import shutil
 import sys
+from pathlib import Path
 from typing import Any
 
+from arm_cli.errors import CommandUsageError
 from arm_node.printable import printable, printable_document, printable_message
 
 
@@ -68,3 +70,15 @@ def _finite(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [_finite(item) for item in value]
     return value
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file that the user asked for.
+
+    Raises:
+        CommandUsageError: the file cannot be written.
+    """
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise CommandUsageError(f"cannot write {path}: {error.strerror}") from error

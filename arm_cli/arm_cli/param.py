@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from arm_cli.arguments import JSON, Argument, Flag, verb
-from arm_cli.errors import CommandUsageError, MessageError, NoSuchNameError, UnansweredError
+from arm_cli.errors import MessageError, NoSuchNameError, UnansweredError
 from arm_cli.names import absolute_name
-from arm_cli.output import complain, print_json, say, say_document
+from arm_cli.output import complain, print_json, say, say_document, write_text
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_node.limited_yaml import YamlError
@@ -260,10 +260,7 @@ def dump(options: argparse.Namespace) -> None:
 
 def _save(text: str, folder: Path, node: str) -> None:
     path = folder / f"{node.strip('/').replace('/', '__')}.yaml"
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise CommandUsageError(f"cannot write {path}: {error.strerror}") from error
+    write_text(path, text)
     say(f"Saving to:  {path}")
 
 

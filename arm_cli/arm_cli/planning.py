@@ -6,7 +6,7 @@ from pathlib import Path
 from arm_cli.arguments import Argument, positive_whole_number, verb
 from arm_cli.check import expanded_urdf
 from arm_cli.errors import ArmCliError, CommandUsageError
-from arm_cli.output import complain, say_document
+from arm_cli.output import complain, say_document, write_text
 
 MIN_SAMPLES = 10_000
 
@@ -43,10 +43,7 @@ def srdf(options: argparse.Namespace) -> None:
     if options.output is None:
         say_document(text, end="")
         return
-    try:
-        options.output.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise ArmCliError(f"cannot write {options.output}: {error.strerror}") from error
+    write_text(options.output, text)
 
 
 def _srdf_of(urdf: str, options: argparse.Namespace) -> str:

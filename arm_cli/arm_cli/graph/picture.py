@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from arm_cli.arguments import Argument, Flag, verb
 from arm_cli.errors import CommandUsageError
-from arm_cli.graph_files import to_dot, to_mermaid, write_text
-from arm_cli.output import say_document
+from arm_cli.graph_files import to_dot, to_mermaid
+from arm_cli.output import say_document, write_text
 from arm_cli.ros.connection import settled_graph
 from arm_node.drawing import NodeTopics, node_graph, to_svg
 
