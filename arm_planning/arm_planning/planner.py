@@ -441,6 +441,11 @@ class Planner:
             return pose_goal(link or group.tip, goal)
         if isinstance(goal, str):
             goal = self.model.state(group.name, goal)
+        elif other := [joint for joint in goal if joint not in group.joints]:
+            raise PlanningError(
+                MoveItErrorCode.INVALID_GOAL_CONSTRAINTS,
+                f"group '{group.name}' has no joint '{other[0]}'; it has {listing(group.joints)}",
+            )
         others = {joint: scene.positions[joint] for joint in group.joints if joint not in goal}
         return joint_goal({**goal, **others})
 
