@@ -1,6 +1,5 @@
 """The controllers that can run trajectories now: configured ones, or those of the manager."""
 
-import logging
 import threading
 from collections.abc import Sequence
 from typing import Any
@@ -9,6 +8,7 @@ from controller_manager_msgs.srv import ListControllers
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.execution.controllers import ControllerKind, TrajectoryController
 
 TIMEOUT_S = 2.0
@@ -27,7 +27,6 @@ KINDS = {
         "gripper_cmd",
     ),
 }
-LOGGER = logging.getLogger("move_group")
 
 
 class ControllerList:
@@ -48,21 +47,29 @@ class ControllerList:
         )
 
     def available(self) -> Sequence[TrajectoryController]:
-        """Return the controllers; none if the manager does not answer."""
+        """Return the controllers.
+
+        Raises:
+            PlanningError: CONTROL_FAILED: the manager does not answer.
+        """
         if self._configured:
             return self._configured
+        name = self._client.service_name
         if not self._client.wait_for_service(TIMEOUT_S):
-            LOGGER.warning("no controller manager answers, so no controllers are known")
-            return ()
+            raise _silence(f"{name} has no server: does the robot, or its simulation, run?")
         answered = threading.Event()
         future = self._client.call_async(ListControllers.Request())
         future.add_done_callback(lambda _: answered.set())
         if not answered.wait(TIMEOUT_S):
-            LOGGER.warning("the controller manager did not answer within %g s", TIMEOUT_S)
-            return ()
+            raise _silence(f"{name} did not answer within {TIMEOUT_S:g} s")
         answer: Any = future.result()
         active = [each for each in answer.controller if each.state == "active"]
         return [found for each in active if (found := _controller(each)) is not None]
+
+
+def _silence(reason: str) -> PlanningError:
+    message = f"nobody says which controllers can move the robot: {reason}"
+    return PlanningError(MoveItErrorCode.CONTROL_FAILED, message)
 
 
 def _controller(listed: Any) -> TrajectoryController | None:
