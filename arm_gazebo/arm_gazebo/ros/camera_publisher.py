@@ -2,7 +2,6 @@
 
 from array import array
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -95,7 +94,7 @@ class CameraPublisher:
     """
 
     def __init__(self, node: Node, sensor: CameraSensor) -> None:
-        self._info = _info_message(sensor)
+        self._info = info_message(sensor)
         self._infos = [node.create_publisher(CameraInfo, t, QOS) for t in sensor.info_topics]
         self._image = _image_message(sensor)
         self._images = [node.create_publisher(Image, t, QOS) for t in sensor.image_topics]
@@ -169,15 +168,23 @@ def _image_message(sensor: CameraSensor) -> Image:
     return message
 
 
-def _info_message(sensor: CameraSensor) -> CameraInfo:
-    intrinsics = Intrinsics.of(sensor)
-    message = CameraInfo(height=sensor.height, width=sensor.width)
+def info_message(sensor: CameraSensor) -> CameraInfo:
+    """Return the projection of a camera, in pixels.
+
+    A point (x, y, z) in the optical frame appears at u = fx x / z + cx, v = fy y / z + cy, moved by
+    the distortion. The image's upper left corner is (0, 0), and the centre of the first pixel is
+    (0.5, 0.5), as in Gazebo; OpenCV and image_geometry put it at (0, 0), so for them cx and cy are
+    half a pixel less.
+    """
+    lens = sensor.lens
+    matrix = np.array([[lens.fx, lens.skew, lens.cx], [0.0, lens.fy, lens.cy], [0.0, 0.0, 1.0]])
+    message = CameraInfo(height=sensor.height, width=sensor.width, distortion_model="plumb_bob")
     message.header.frame_id = sensor.optical_frame
-    message.distortion_model = DISTORTION_MODEL
-    message.d = list(intrinsics.d)
-    message.k = np.array(intrinsics.k)
-    message.r = np.array(intrinsics.r)
-    message.p = np.array(intrinsics.p)
+    message.d = list(lens.distortion)
+    message.k = matrix.ravel()
+    message.r = np.eye(3).ravel()
+    # Of the rectified image.
+    message.p = np.column_stack([matrix, np.zeros(3)]).ravel()
     return message
 
 
@@ -188,43 +195,6 @@ def _compress(picture: NDArray[np.uint8]) -> "array[int]":
     swapped = cv2.cvtColor(picture, cv2.COLOR_RGB2BGR)
     _ok, encoded = cv2.imencode(".jpg", swapped, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
     return array("B", encoded.tobytes())
-
-
-DISTORTION_MODEL = "plumb_bob"
-
-
-@dataclass(frozen=True, slots=True)
-class Intrinsics:
-    """Projection of a camera, row by row, in pixels.
-
-    A point (x, y, z) in the optical frame appears at u = fx x / z + cx, v = fy y / z + cy, moved by
-    the distortion. The image's upper left corner is (0, 0), and the centre of the first pixel is
-    (0.5, 0.5), as in Gazebo; OpenCV and image_geometry put it at (0, 0), so for them cx and cy are
-    half a pixel less.
-
-    Attributes:
-        k: (9,) camera matrix.
-        d: (5,) distortion coefficients k1, k2, p1, p2, k3.
-        r: (9,) rectification matrix, the identity.
-        p: (12,) projection matrix, that of the rectified image.
-    """
-
-    k: tuple[float, ...]
-    d: tuple[float, ...]
-    r: tuple[float, ...]
-    p: tuple[float, ...]
-
-    @classmethod
-    def of(cls, sensor: CameraSensor) -> "Intrinsics":
-        """Return the intrinsics of a camera."""
-        lens = sensor.lens
-        top, middle = (lens.fx, lens.skew, lens.cx), (0.0, lens.fy, lens.cy)
-        return cls(
-            k=(*top, *middle, 0.0, 0.0, 1.0),
-            d=lens.distortion,
-            r=(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
-            p=(*top, 0.0, *middle, 0.0, 0.0, 0.0, 1.0, 0.0),
-        )
 
 
 PERIOD_S = 1.0

@@ -2,8 +2,9 @@
 
 import logging
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
+from operator import attrgetter
 from typing import Any
 
 from rclpy.clock import Clock
@@ -32,8 +33,13 @@ STEP_BACK_S = 1e-4
 Without it, the loop waits for rclpy's bookkeeping, and a period takes half as long again."""
 DEPTH = 10
 TICK_DONE = "tick_done"
-WITH_TIME = ("header.stamp", "stamp", "clock", "")
-"""Where a message has its builtin_interfaces/msg/Time; empty for the message itself."""
+TIMES: tuple[Callable[[Any], Any], ...] = (
+    attrgetter("header.stamp"),
+    attrgetter("stamp"),
+    attrgetter("clock"),
+    lambda message: message,
+)
+"""Where a message has its builtin_interfaces/msg/Time; the last is for a message that is one."""
 
 logger = logging.getLogger(__name__)
 
@@ -178,17 +184,9 @@ def _absolute(name: str, node: Node) -> str:
 def _reader(class_: type[Any]) -> Callable[[Any], Any] | None:
     """Return a function that returns a message's time; None if it has none."""
     example = class_()
-    for path in WITH_TIME:
-        parts: Sequence[str] = path.split(".") if path else ()
-        found = example
-        for part in parts:
-            found = getattr(found, part, None)
-        if hasattr(found, "sec") and hasattr(found, "nanosec"):
-            return lambda message, parts=parts: _value(message, parts)
+    for read in TIMES:
+        with suppress(AttributeError):
+            found = read(example)
+            if hasattr(found, "sec") and hasattr(found, "nanosec"):
+                return read
     return None
-
-
-def _value(message: Any, parts: Sequence[str]) -> Any:
-    for part in parts:
-        message = getattr(message, part)
-    return message

@@ -10,7 +10,7 @@ import pytest
 from arm_gazebo.camera.depth_image import PointGrid
 from arm_gazebo.rendering.pinhole_view import PinholeView
 from arm_gazebo.robot.part import add_cameras
-from arm_gazebo.ros.camera_publisher import Intrinsics
+from arm_gazebo.ros.camera_publisher import info_message
 from arm_gazebo.sensors.camera import CameraSensor
 
 COLUMNS, ROWS, SQUARE = 6, 4, 0.06
@@ -84,11 +84,11 @@ def opencv_camera(sensor: CameraSensor) -> tuple[np.ndarray, np.ndarray, float]:
 
     The centre of OpenCV's first pixel is at 0.
     """
-    intrinsics = Intrinsics.of(sensor)
-    k = np.reshape(intrinsics.k, (3, 3)).copy()
+    info = info_message(sensor)
+    k = np.reshape(info.k, (3, 3)).copy()
     skew, k[0, 1] = k[0, 1] / k[1, 1], 0.0
     k[:2, 2] -= 0.5
-    return k, np.array(intrinsics.d), skew
+    return k, np.array(info.d), skew
 
 
 def projected(
