@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol, cast
 
 from arm_cli.errors import ArmCliError
 from arm_cli.output import complain, say_document
-from arm_node.messages.errors import MessageValueError
+from arm_node.messages import MessageValueError
 
 if TYPE_CHECKING:
     from arm_cli.arguments import CommandParser, Declaration, VerbFunction

@@ -16,7 +16,7 @@ from moveit_msgs.msg import MotionPlanRequest, MotionSequenceRequest, RobotTraje
 from moveit_msgs.msg import PlanningScene as SceneMessage
 
 from arm_description.resources import ResourceFinder
-from arm_node.messages.errors import MessageValueError
+from arm_node.messages import MessageValueError
 from arm_node.messages.filling import fill_message
 from arm_planning import Planner
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits

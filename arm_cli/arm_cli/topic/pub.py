@@ -25,7 +25,7 @@ from arm_cli.qos_options import qos_arguments, qos_choice
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_cli.word_completion import message_names
-from arm_node.messages.errors import MessageValueError
+from arm_node.messages import MessageValueError
 from arm_node.names import describe_known
 from arm_node.user_file import read_text
 

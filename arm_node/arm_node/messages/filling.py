@@ -18,7 +18,7 @@ from rosidl_parser.definition import (
 )
 
 from arm_node.limited_yaml import YamlError, load_yaml, load_yaml_documents
-from arm_node.messages.errors import MessageValueError
+from arm_node.messages import MessageValueError
 from arm_node.messages.fields import FLOATS, INTEGER_RANGES, message_class, slots, type_name
 
 _TRUTH = {"true": True, "false": False, "1": True, "0": False}

@@ -13,7 +13,7 @@ import yaml
 from rosidl_parser.definition import AbstractGenericString, BasicType, NamespacedType
 
 from arm_node.limited_yaml import YamlError, load_yaml
-from arm_node.messages.errors import MessageValueError
+from arm_node.messages import MessageValueError
 from arm_node.messages.fields import FLOATS, INTEGER_RANGES, slots, type_name
 from arm_node.messages.filling import FilledMessage, fill_message
 from arm_node.messages.text import to_plain

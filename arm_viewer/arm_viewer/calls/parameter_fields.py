@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any
 
-from arm_node.messages.errors import MessageValueError
+from arm_node.messages import MessageValueError
 from arm_viewer.calls.form import FieldKind, FormField, flow, value_of
 
 VALUE_FIELDS = (

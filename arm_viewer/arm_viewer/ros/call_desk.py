@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.node import Node
 
-from arm_node.messages.errors import MessageValueError
+from arm_node.messages import MessageValueError
 from arm_viewer.calls.call import (
     Callee,
     CallKind,

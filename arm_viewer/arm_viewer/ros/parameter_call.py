@@ -12,7 +12,7 @@ from rcl_interfaces.srv import (
 )
 from rclpy.node import Node
 
-from arm_node.messages.errors import MessageValueError
+from arm_node.messages import MessageValueError
 from arm_viewer.calls.call import CallState, failure
 from arm_viewer.calls.parameter_fields import VALUE_FIELDS, parameter_field, parameter_value
 from arm_viewer.ros.service_call import KnownService, Report

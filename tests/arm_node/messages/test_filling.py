@@ -9,7 +9,7 @@ from sensor_msgs.msg import CameraInfo, Image, JointState
 from std_msgs.msg import Bool, Byte, Float64, Float64MultiArray, Int64, String, UInt8
 from trajectory_msgs.msg import JointTrajectory
 
-from arm_node.messages.errors import MessageValueError
+from arm_node.messages import MessageValueError
 from arm_node.messages.filling import fill_message, read_yaml, read_yaml_documents
 from arm_node.messages.text import to_yaml
 

@@ -20,7 +20,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Byte, Char, Empty, Float32, Int64, UInt64
 from std_srvs.srv import SetBool
 
-from arm_node.messages.errors import MessageValueError
+from arm_node.messages import MessageValueError
 from arm_node.messages.fields import INTEGER_RANGES, message_class, slots, type_name
 from arm_viewer.calls.form import MAX_FIELDS, FieldKind, form_of, read_form
 

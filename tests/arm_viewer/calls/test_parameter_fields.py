@@ -10,7 +10,7 @@ from rcl_interfaces.msg import (
     ParameterValue,
 )
 
-from arm_node.messages.errors import MessageValueError
+from arm_node.messages import MessageValueError
 from arm_viewer.calls.form import FieldKind
 from arm_viewer.calls.parameter_fields import VALUE_FIELDS, parameter_field, parameter_value
 
