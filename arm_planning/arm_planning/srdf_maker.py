@@ -1,10 +1,11 @@
 """Makes a whole SRDF for any URDF: default groups, and the pairs of links that need no check.
 
-Links that are joined touch at their joint. Other pairs are decided by samples of the joints: those
-that touch in nearly all states, and those that never come near each other.
+Links that are joined touch at their joint, and those of a gripper where it is open or closed. Other
+pairs are decided by samples of the joints: those that touch in nearly all states, and those that
+never come near each other.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -66,6 +67,7 @@ def make_srdf(
     pairs = dict.fromkeys(_joined(robot), "Adjacent")
     sampler = _Sampler(robot, srdf, pieces, np.random.default_rng(0))
     pairs |= dict.fromkeys(sampler.always(pairs), "Always")
+    pairs |= dict.fromkeys(sampler.gripping(pairs), "Default")
     touching = sampler.ever(pairs, samples)
     solid = [link.name for link in robot.links if link.collisions]
     every = [(min(a, b), max(a, b)) for i, a in enumerate(solid) for b in solid[i + 1 :]]
@@ -99,6 +101,20 @@ class _Sampler:
             for pair in _touching(collisions, q):
                 counts[pair] = counts.get(pair, 0) + 1
         return {pair for pair, count in counts.items() if count >= ALWAYS * FIRST_SAMPLES}
+
+    def gripping(self, known: Mapping[Pair, str]) -> set[Pair]:
+        """Return the pairs of a gripper's own links that touch at home or in one of its states."""
+        model = self._model(self.robot)
+        collisions = self._collisions(model, known)
+        found: set[Pair] = set()
+        for effector in self.srdf.end_effectors.values():
+            own = _carried_by(self.robot, self.srdf.groups[effector.group].joints)
+            own.add(effector.parent_link)
+            states = [state for key, state in self.srdf.states.items() if key[0] == effector.group]
+            for state in ({}, *states):
+                q = np.array([state.get(joint, (0.0,))[0] for joint in model.joints])
+                found |= {pair for pair in _touching(collisions, q) if own.issuperset(pair)}
+        return found
 
     def ever(self, known: Mapping[Pair, str], samples: int) -> set[Pair]:
         """Return the pairs that come near each other in a state.
@@ -183,6 +199,14 @@ def _joined(robot: Robot) -> Iterator[Pair]:
             above = carriers.get(above)
         if above is not None:
             yield min(link, above), max(link, above)
+
+
+def _carried_by(robot: Robot, joints: Sequence[str]) -> set[str]:
+    """Return the links that joints move."""
+    links = [robot.joint(name).child for name in joints]
+    for link in links:
+        links.extend(joint.child for joint in robot.children(link))
+    return set(links)
 
 
 def _grown(robot: Robot) -> Robot:

@@ -94,6 +94,26 @@ def test_a_robot_that_collides_everywhere_keeps_its_home():
     assert all(": set another state; if the two may touch" in sentence for sentence in told)
 
 
+def test_the_links_of_a_gripper_may_touch_where_it_is_closed():
+    def slides(name: str, axis: str, **more: str) -> str:
+        return joint(name, "hand", name, kind="prismatic", axis=axis, limits=(0.0, 0.1), **more)
+
+    gripper = robot(
+        ball("base", 0.05),
+        *(ball("arm", 0.05, x=0.5), ball("hand", 0.02), ball("rail", 0.01, x=0.1)),
+        *(ball("left_finger", 0.02, x=0.2), ball("right_finger", 0.02, x=0.2)),
+        joint("turn", "base", "arm", axis="0 0 1"),
+        joint("bend", "arm", "hand", axis="0 1 0", xyz="1 0 0"),
+        joint("mount", "hand", "rail", kind="fixed", limits=None),
+        slides("left_finger", "0 1 0", xyz="0 0.02 0"),
+        slides("right_finger", "0 -1 0", xyz="0 -0.02 0"),
+    )
+    told: list[str] = []
+    srdf = make_srdf(parse_urdf(gripper), told.append)
+    assert srdf.disabled["left_finger", "right_finger"] == "Default"
+    assert not told
+
+
 def test_the_same_robot_gives_the_same_srdf():
     assert make_srdf(parse_urdf(SPINNER), lambda _: None) == made()[0]
 
