@@ -90,8 +90,8 @@ def is_abandoned(file: Path) -> bool:
 
 @pytest.fixture(scope="class")
 def arm(launch_for_class):
-    """`arm launch`, for tests that change nothing of it."""
-    launch_for_class().wait_until_ready()
+    """`arm launch` with something to see, for tests that change nothing of it."""
+    launch_for_class("world:=objects").wait_until_ready()
 
 
 @pytest.mark.usefixtures("arm")
@@ -168,23 +168,21 @@ class TestAsItStarts:
             "dyn4_r",
         }
 
+    def test_the_camera_sends_pictures_and_a_matching_camera_info(self, client):
+        from sensor_msgs.msg import CameraInfo, Image
 
-def test_the_camera_sends_pictures_and_a_matching_camera_info(launch, client):
-    from sensor_msgs.msg import CameraInfo, Image
-
-    launch("world:=objects").wait_until_ready()
-    images = client.subscribe(Image, "/videocamera")
-    infos = client.subscribe(CameraInfo, "/camera_info")
-    paired = client.subscribe(CameraInfo, "/videocamera/camera_info")
-    image = images.wait_for(3)[-1]
-    info = infos.wait_for(3)[-1]
-    paired.wait_for(3)
-    assert (image.width, image.height, image.encoding, image.step) == (320, 240, "rgb8", 960)
-    assert image.header.frame_id == info.header.frame_id == "camera_optical_frame"
-    assert info.k[0] == pytest.approx(160 / np.tan(1.047 / 2), rel=1e-3)
-    assert (info.width, info.height) == (320, 240)
-    pixels = np.frombuffer(image.data, np.uint8).reshape(240, 320, 3)
-    assert pixels.std() > 10, "the picture shows something"
+        images = client.subscribe(Image, "/videocamera")
+        infos = client.subscribe(CameraInfo, "/camera_info")
+        paired = client.subscribe(CameraInfo, "/videocamera/camera_info")
+        image = images.wait_for(3)[-1]
+        info = infos.wait_for(3)[-1]
+        paired.wait_for(3)
+        assert (image.width, image.height, image.encoding, image.step) == (320, 240, "rgb8", 960)
+        assert image.header.frame_id == info.header.frame_id == "camera_optical_frame"
+        assert info.k[0] == pytest.approx(160 / np.tan(1.047 / 2), rel=1e-3)
+        assert (info.width, info.height) == (320, 240)
+        pixels = np.frombuffer(image.data, np.uint8).reshape(240, 320, 3)
+        assert pixels.std() > 10, "the picture shows something"
 
 
 def test_a_stop_signal_ends_everything_with_exit_code_0(launch):

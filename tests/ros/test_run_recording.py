@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 from programs import RosProgram
 
+from arm_description.resources import resolve_uri
+from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
 
@@ -123,9 +125,11 @@ def test_a_recording_is_refused_in_a_sentence_and_begins_and_ends_by_a_parameter
 
 
 @pytest.mark.parametrize("is_gone", [True, False], ids=["before", "meanwhile"])
-def test_a_recording_ends_with_its_simulation(launch, tmp_path, is_gone):
-    running = launch("camera:=none")
-    running.wait_until_ready()
+def test_a_recording_ends_with_its_simulation(simulate, tmp_path, is_gone):
+    model = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
+    running = simulate(
+        {"arm_gazebo": {"robot_description": expand_xacro(model, {"camera": "none"})}}
+    )
     with record_verb(tmp_path / "a.run") as verb:
         running.process.send_signal(signal.SIGINT)
         if is_gone:
