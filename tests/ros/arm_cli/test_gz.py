@@ -1,8 +1,7 @@
 """`arm gz` beside a running simulation: topics, services and models in gz' form."""
 
 import re
-import subprocess
-import sys
+import shlex
 import time
 
 import pytest
@@ -17,25 +16,20 @@ def anything(_text: str) -> bool:
 
 
 @pytest.fixture(scope="module")
-def gz(launch_for_file):
+def gz(launch_for_file, start_for_file):
     launch_for_file("world:=objects").wait_until_ready()
 
     def run(*words: str, code: int = 0, verb: str = "gz", until=anything) -> str:
         """Run a command line; `until` repeats it, as topics may be discovered too late at first."""
         deadline = time.monotonic() + TIMEOUT_S
         while True:
-            done = subprocess.run(
-                [sys.executable, "-m", "arm_cli", verb, *words],
-                capture_output=True,
-                text=True,
-                timeout=TIMEOUT_S,
-                check=False,
-            )
-            text = done.stdout if code == 0 else done.stderr
-            if done.returncode == code and until(text):
+            command = start_for_file(shlex.join(["arm", verb, *words]))
+            ended = command.wait()
+            text = command.out if code == 0 else command.err
+            if ended == code and until(text):
                 return text
             is_over = until is anything or time.monotonic() > deadline
-            assert not is_over, done.stdout + done.stderr
+            assert not is_over, command.out + command.err
 
     # The camera's process starts after the simulation's.
     run("echo", "--once", "/videocamera/camera_info", verb="topic", until=bool)
