@@ -40,16 +40,21 @@ class Approach:
         self._body = model.geom_bodyid.tolist()
         self._root = model.body_rootid[model.geom_bodyid].tolist()
         self._radius = model.geom_rbound.tolist()
+        self._change = np.zeros(model.nv)
         self._accelerations: list[float] = []
 
     def begin(self, change: Array) -> None:
         """Begin a chord that changes MuJoCo's coordinates by so much, (nq,)."""
         self._data.qvel[:] = change
-        moved = np.abs(change)
+        # Most chords are proved without them.
+        self._change, self._accelerations = change, []
+
+    def _bound_accelerations(self) -> list[float]:
+        moved = np.abs(self._change)
         # Of two joints between the parts, the one with the larger number is carried by the other.
         between = np.where(self._bounds > 0.0, moved, 0.0)
         before = 2.0 * np.cumsum(between, axis=1) - between
-        self._accelerations = (self._bounds * moved * before).sum(axis=1).tolist()
+        return (self._bounds * moved * before).sum(axis=1).tolist()
 
     def clear(self, near: Iterable[Near], limit: float) -> float:
         """Return for which part of the chord, in both directions, no pair of geoms meets.
@@ -59,6 +64,7 @@ class Approach:
             limit: for which part all other pairs do not meet.
         """
         model, data = self._model, self._data
+        self._accelerations = self._accelerations or self._bound_accelerations()
         mujoco.mj_comPos(model, data)
         mujoco.mj_comVel(model, data)
         speeds: dict[tuple[int, int], float] = {}

@@ -16,6 +16,9 @@ from arm_planning.errors import MoveItErrorCode, PlanningError
 Array = NDArray[np.float64]
 
 ORDER = {BodyKind.ROBOT_LINK: 0, BodyKind.ROBOT_ATTACHED: 1, BodyKind.WORLD_OBJECT: 2}
+OTHER_SEARCH = int(mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
+"""Makes MuJoCo look for contacts with libccd. Its depths are rougher, so that a state of meshes in
+contact takes three quarters of the time; one of 200 000 states was free that touches by 0.5 um."""
 
 
 class PosedScene:
@@ -35,7 +38,7 @@ class PosedScene:
         self.bodies = compiled.bodies
         self.links = compiled.links
         self.coordinates = compiled.coordinates
-        self._qpos = self.data.qpos
+        self._qpos, self._option = self.data.qpos, self.model.opt
         matrix = self.coordinates.matrix
         self._direct = bool(
             np.array_equal(matrix, np.eye(matrix.shape[1])) and not self.coordinates.constant.any()
@@ -79,7 +82,8 @@ class PosedScene:
     def free_count(self, states: Array, clearance_m: float = 0.0) -> int:
         """Return how many states are free before the first in which something touches.
 
-        It takes two thirds of the time of a call for each state.
+        It takes two thirds of the time of a call for each state. Depths do not matter here, so they
+        are not exact.
 
         Args:
             states: positions of the joints that vary, (k, n).
@@ -89,17 +93,20 @@ class PosedScene:
             PlanningError: a position is not finite.
         """
         positions = self.positions(states)
-        model, data, qpos = self.model, self.data, self._qpos
+        model, data, qpos, option = self.model, self.data, self._qpos, self._option
+        place, look, usual = mujoco.mj_kinematics, mujoco.mj_collision, option.disableflags
         if clearance_m:
             self.set_margins(clearance_m)
+        option.disableflags = usual | OTHER_SEARCH
         free = len(positions)
         for number, row in enumerate(positions):
             qpos[:] = row
-            mujoco.mj_kinematics(model, data)
-            mujoco.mj_collision(model, data)
+            place(model, data)
+            look(model, data)
             if data.ncon:
                 free = number
                 break
+        option.disableflags = usual
         if clearance_m:
             self.set_margins(0.0)
         return free

@@ -18,15 +18,31 @@ NEAREST, FARTHEST = 0.02, 0.4
 """How far they lead from the path: the first and the last, in the joints' units."""
 CLOSE = 0.2
 """Way points that are as close as this to the place are moved with it."""
+SAME_PLACE = 0.02
+"""Places that are as close as this are one place: it cannot be bent if the other could not."""
 SPREAD = 2.0
 """How much chance has a part in the last one's direction; the first leads straight away."""
 DOING = "proving that the path is free"
 
 
 def mend(
-    path: Array, space: Space, checker: StateChecker, seed: Sequence[int], deadline: Deadline
+    path: Array,
+    space: Space,
+    checker: StateChecker,
+    seed: Sequence[int],
+    deadline: Deadline,
+    stuck: list[Array],
 ) -> Array | None:
     """Return a path, (m, n), of which every state is proved free: the given one if it can be.
+
+    Args:
+        path: way points.
+        space: where bends may lead.
+        checker: proves it.
+        seed: seed of the bends' directions.
+        deadline: when the answer is due.
+        stuck: places, (n,) each, where no bend could be proved. Bends are not tried there again,
+            and another such place is appended.
 
     Returns:
         None if no bend near an obstruction can be proved.
@@ -43,6 +59,8 @@ def mend(
             return np.concatenate([proved[:-1], rest])
         first, last = obstruction.segment, obstruction.segment + 1
         place = rest[first] + obstruction.fraction * (rest[last] - rest[first])
+        if any(length(place - other) < SAME_PLACE for other in stuck):
+            return None
         points = np.insert(rest, last, place, axis=0)
         last += 1
         # Way points next to it are as close to what is in the way.
@@ -52,6 +70,7 @@ def mend(
             last += 1
         bent = _bent(points[first : last + 1], obstruction.away, space, checker, random, deadline)
         if bent is None:
+            stuck.append(place)
             return None
         proved, rest = np.concatenate([proved[:-1], rest[:first], bent]), points[last:]
         if len(rest) == 1:

@@ -87,8 +87,9 @@ def shortened_and_proved(
     """Return a path that was found in a space, (m, n), shortened and proved; None without proof."""
     seed = (problem.seed, attempt, 1)
     path = shorten(found, space, seed, problem.deadline)
+    stuck: list[Array] = []
     for candidate in (path, found):
-        mended = mend(candidate, space, problem.checker, seed, problem.deadline)
+        mended = mend(candidate, space, problem.checker, seed, problem.deadline, stuck)
         if mended is not None:
             return mended
     return None

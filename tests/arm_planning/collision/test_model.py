@@ -95,6 +95,22 @@ def test_many_states_follow_mimic_joints():
     assert model.free_count(states) == 2
 
 
+def test_a_real_robots_states_are_counted_as_each_is_judged():
+    model = mycobot()
+    around = {f"box{n}": thing(f"box{n}", Box((0.1, 0.1, 0.1)), 0.2, 0.1 * n, 0.2) for n in (-1, 1)}
+    positions = dict.fromkeys(model.joints, 0.0)
+    checker = CollisionModel(model, PlanningScene(positions, around, allowed=neighbours(model)))
+    limits = np.array([checker.limits(joint) for joint in checker.joints]).T
+    states = np.random.default_rng(0).uniform(*limits, (300, len(checker.joints)))
+    judged = [checker.is_free(q) for q in states]
+    assert {True, False} == set(judged)
+    assert [checker.free_count(q[None, :]) == 1 for q in states] == judged
+    deep = states[judged.index(False)]
+    before = checker.contacts(deep)
+    checker.free_count(states)
+    assert checker.contacts(deep) == before
+
+
 def test_a_contact_says_what_where_and_how_deep():
     (contact,) = slider(thing("box1", Box((0.2, 0.2, 0.2)), 2.0, 0.0, 0.0)).contacts([0.803])
     assert (contact.first_kind, contact.second_kind) == (

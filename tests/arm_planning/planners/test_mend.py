@@ -21,7 +21,7 @@ def test_samples_miss_what_the_proof_finds():
 
 def test_a_path_is_bent_past_what_it_touches():
     space = SampledSpace(NEEDLE, *LIMITS)
-    path = mend(np.array([START, GOAL]), space, NEEDLE, (1,), NO_DEADLINE)
+    path = mend(np.array([START, GOAL]), space, NEEDLE, (1,), NO_DEADLINE, [])
     assert path is not None
     assert len(path) == 3
     assert NEEDLE.prove(path) is None
@@ -32,7 +32,7 @@ def test_a_way_point_that_touches_is_moved():
     space = SampledSpace(NEEDLE, *LIMITS)
     touching = np.array([np.arctan2(0.5878, 1.918), 0.0])
     assert not NEEDLE.is_free(touching)
-    path = mend(np.array([START, touching, GOAL]), space, NEEDLE, (1,), NO_DEADLINE)
+    path = mend(np.array([START, touching, GOAL]), space, NEEDLE, (1,), NO_DEADLINE, [])
     assert path is not None
     assert NEEDLE.prove(path) is None
     assert np.array_equal(path[[0, -1]], [START, GOAL])
@@ -41,14 +41,26 @@ def test_a_way_point_that_touches_is_moved():
 def test_a_path_that_is_free_stays_as_it_is():
     arm = PlanarArm()
     path = np.array([START, GOAL])
-    kept = mend(path, SampledSpace(arm, *LIMITS), arm, (1,), NO_DEADLINE)
+    kept = mend(path, SampledSpace(arm, *LIMITS), arm, (1,), NO_DEADLINE, [])
     assert np.array_equal(kept, path)
 
 
-def test_what_cannot_be_bent_is_none():
+def test_what_cannot_be_bent_is_none_and_is_not_tried_again():
     wall = PlanarArm(((1.5, 0.6, 0.3),))
-    space = SampledSpace(wall, *LIMITS)
-    assert mend(np.array([START, GOAL]), space, wall, (1,), NO_DEADLINE) is None
+    space, stuck = SampledSpace(wall, *LIMITS), []
+    assert mend(np.array([START, GOAL]), space, wall, (1,), NO_DEADLINE, stuck) is None
+    assert len(stuck) == 1
+    proofs = []
+
+    class Counting(PlanarArm):
+        def prove(self, path):
+            proofs.append(path)
+            return super().prove(path)
+
+    again = Counting(((1.5, 0.6, 0.3),))
+    assert mend(np.array([START, GOAL]), space, again, (1,), NO_DEADLINE, stuck) is None
+    assert len(proofs) == 1
+    assert len(stuck) == 1
 
 
 def test_the_planner_returns_the_bent_path():
