@@ -2,8 +2,8 @@
 
 `arm launch mycobot` starts with and without `planning:=true`, in turns. Then a client with an
 executor thread asks for free motions to and fro, and in turn for an answer that needs no plan,
-`check_state_validity`. What rclpy itself takes for that: the same service of a plain node with the
-same kind of executor, whose answer is empty; and `get_parameters`, whose messages are smaller.
+`check_state_validity`. What rclpy itself takes for that: the same service of a plain node that
+`rclpy.spin` serves, whose answer is empty; and `get_parameters`, whose messages are smaller.
 
     python benchmarks/move_group.py
 """
@@ -44,19 +44,13 @@ def serve_plainly() -> None:
     """Serve check_state_validity with empty answers until the process is ended."""
     import rclpy
     from moveit_msgs.srv import GetStateValidity
-    from rclpy.callback_groups import ReentrantCallbackGroup
-    from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
-
-    from arm_planning.ros.move_group import THREADS
+    from rclpy.executors import ExternalShutdownException
 
     rclpy.init()
     node = rclpy.create_node("plain")
-    group = ReentrantCallbackGroup()
-    node.create_service(GetStateValidity, PLAIN, lambda _, answer: answer, callback_group=group)
-    executor = MultiThreadedExecutor(THREADS)
-    executor.add_node(node)
+    node.create_service(GetStateValidity, PLAIN, lambda _, answer: answer)
     with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
-        executor.spin()
+        rclpy.spin(node)
 
 
 @contextlib.contextmanager

@@ -6,7 +6,6 @@ from contextlib import contextmanager
 from typing import Any
 
 from moveit_msgs.srv import GetGroupUrdf
-from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
@@ -30,6 +29,7 @@ from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planner_parameters import PlannerParameterServices
 from arm_planning.ros.planning_services import PlanningServices
 from arm_planning.ros.planning_session import PlanningSession
+from arm_planning.ros.quick_services import QuickExecutor, QuickServices, SlowExecutor
 from arm_planning.ros.robot_setup import PlanningSetup, values_below
 from arm_planning.ros.scene_monitor import SceneMonitor
 from arm_planning.ros.sequence_server import SequenceServer
@@ -69,11 +69,12 @@ class MoveGroup:
             session, executor, display, allows_execution, moving=Turns(), planning=Turns(PLANS)
         )
         limit = BusyLimit(SERVICES)
+        self._quick = QuickServices()
         self._served = (
             MoveActions(node, motions),
             SequenceServer(node, motions, limit),
             PlanningServices(node, session, display, limit),
-            StateServices(node, session, limit),
+            StateServices(node, session, limit, self._quick),
             PlannerParameterServices(node, session.parameters, setup.model.groups),
             GeometryFiles(node, setup.model, self.monitor),
         )
@@ -95,17 +96,22 @@ class MoveGroup:
     @contextmanager
     def serving(self) -> Iterator[None]:
         """Serve what may take long on threads of their own; at the end the robot stops."""
-        multi = MultiThreadedExecutor(THREADS)
-        multi.add_node(self._node)
-        thread = ExecutorThread("planning", multi)
-        thread.start()
+        slow = SlowExecutor(THREADS)
+        slow.add_node(self._node)
+        threads = (
+            ExecutorThread("planning", slow),
+            ExecutorThread("quick answers", QuickExecutor(self._node, self._quick)),
+        )
+        for thread in threads:
+            thread.start()
         try:
             yield
         finally:
             for turns in (self._motions.moving, self._motions.planning):
                 turns.stop()
             self._executor.end()
-            thread.stop()
+            for thread in threads:
+                thread.stop()
 
     def _take_event(self, event: String) -> None:
         if event.data == "stop":

@@ -24,6 +24,7 @@ from arm_planning.ros.convert import (
 )
 from arm_planning.ros.convert_constraints import constraints_of
 from arm_planning.ros.planning_session import PlanningSession
+from arm_planning.ros.quick_services import QuickServices
 from arm_planning.scene.scene import PlanningScene
 
 LOGGER = logging.getLogger("move_group")
@@ -32,13 +33,15 @@ LOGGER = logging.getLogger("move_group")
 class StateServices:
     """Serves compute_ik, compute_fk and check_state_validity; several threads spin the node."""
 
-    def __init__(self, node: Node, session: PlanningSession, limit: BusyLimit) -> None:
+    def __init__(
+        self, node: Node, session: PlanningSession, limit: BusyLimit, quick: QuickServices
+    ) -> None:
         self._node = node
         self._session = session
         group = ReentrantCallbackGroup()
         offer_service(node, GetPositionIK, "compute_ik", self._inverse, group=group, limit=limit)
-        offer_service(node, GetPositionFK, "compute_fk", self._forward, group=group)
-        offer_service(node, GetStateValidity, "check_state_validity", self._validity, group=group)
+        offer_service(node, GetPositionFK, "compute_fk", self._forward, group=quick)
+        offer_service(node, GetStateValidity, "check_state_validity", self._validity, group=quick)
 
     def _inverse(self, request: Any, answer: GetPositionIK.Response) -> GetPositionIK.Response:
         try:
