@@ -200,17 +200,6 @@ def resolve_uri(
     return ResourceFinder(None, search_path, environ).find(uri)
 
 
-def find_package(
-    name: str, search_path: Sequence[Path] = (), environ: Mapping[str, str] = os.environ
-) -> Path:
-    """Return the folder of a package's data; see `ResourceFinder.package`.
-
-    Raises:
-        ResourceNotFoundError: there is none.
-    """
-    return ResourceFinder(None, search_path, environ).package(name)
-
-
 def _in_folders(rest: str, folders: Sequence[Path]) -> Iterator[Path]:
     roots = [os.path.abspath(folder) for folder in folders]
     paths = [Path(os.path.normpath(os.path.join(root, rest))) for root in roots]

@@ -8,7 +8,7 @@ import pytest
 
 from arm_cli.check_process import check
 from arm_cli.errors import ArmCliError
-from arm_description.resources import find_package
+from arm_description.resources import resolve_uri
 
 LIMIT = '<limit lower="-1" upper="1" effort="50" velocity="2"/>'
 MASS = '<inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial>'
@@ -103,7 +103,7 @@ def namesake(tmp_path, monkeypatch):
     (package / "urdf").mkdir(parents=True)
     (package / "meshes").mkdir()
     (package / "package.xml").write_text("<package><name>arm_description</name></package>")
-    installed = find_package("arm_description") / "meshes"
+    installed = resolve_uri("package://arm_description/meshes")
     (mesh,) = sorted(installed.glob("*.stl"))[:1]
     (package / "meshes" / mesh.name).write_text(TRIANGLES)
     (package / "urdf/part.xacro").write_text(

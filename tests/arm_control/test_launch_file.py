@@ -5,7 +5,7 @@ import os
 import pytest
 
 from arm_control.course import course_file
-from arm_description.resources import find_package
+from arm_description.resources import resolve_uri
 from launch_py.errors import UsageError
 from launch_py.launch_description import expand_description
 from launch_py.launch_description_sources import read_launch_file
@@ -15,7 +15,7 @@ ROS1_NAMES = ["j0p_controller", "j1p_controller", "j2p_controller", "j3p_control
 
 def spawned(**arguments: str) -> list[tuple[list[str], str, str]]:
     """Return the controllers, the manager and the parameter file of each spawner."""
-    path = find_package("arm_control") / "launch" / "arm_control.launch.py"
+    path = resolve_uri("package://arm_control/launch/arm_control.launch.py")
     plan = expand_description(read_launch_file(path), arguments, os.environ, path)
     found: list[tuple[list[str], str, str]] = []
     for step in plan.processes:
@@ -52,7 +52,7 @@ def test_the_arguments_of_ros_1_are_taken():
 def test_named_controllers_without_a_course_have_the_default_parameter_file():
     ((names, manager, file),) = spawned(controllers="position_controller")
     assert (names, manager) == (["position_controller"], "/controller_manager")
-    assert file == str(find_package("arm_control") / "config" / "arm_control.yaml")
+    assert file == str(resolve_uri("package://arm_control/config/arm_control.yaml"))
 
 
 def test_a_parameter_file_is_passed_to_every_spawner():

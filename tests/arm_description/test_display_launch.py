@@ -5,7 +5,7 @@ import runpy
 import pytest
 
 from arm_cli.main import main
-from arm_description.resources import find_package
+from arm_description.resources import resolve_uri
 from arm_description.urdf.description_source import source_of
 
 NODES = {"robot_state_publisher", "joint_state_publisher", "arm_viewer_node"}
@@ -46,7 +46,7 @@ def described(capsys) -> str:
 
 @pytest.fixture
 def describe():
-    return runpy.run_path(str(find_package("arm_description") / "launch" / "display.launch.py"))[
+    return runpy.run_path(str(resolve_uri("package://arm_description/launch/display.launch.py")))[
         "describe"
     ]
 
@@ -79,7 +79,7 @@ def test_another_models_arguments_are_passed_on(describe, other_model):
 
 
 def test_the_arm_gets_the_requested_camera(describe):
-    model = str(find_package("arm_description") / "urdf" / "arm.urdf.xacro")
+    model = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
     assert '<link name="camera_link"' in describe(model, "", "front")
     assert '<link name="camera_link"' not in describe(model, "", "none")
 

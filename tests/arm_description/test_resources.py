@@ -7,7 +7,7 @@ import pytest
 
 from arm_description import ResourceNotFoundError, resolve_uri
 from arm_description.package_search import share_folders
-from arm_description.resources import find_package
+from arm_description.resources import ResourceFinder
 
 
 def make(path: Path) -> Path:
@@ -121,7 +121,7 @@ def test_names_that_no_file_can_have_are_not_found(name):
     with pytest.raises(ResourceNotFoundError, match="no file for"):
         resolve_uri(f"package://robot/{name}")
     with pytest.raises(ResourceNotFoundError, match="no package"):
-        find_package(name)
+        ResourceFinder().package(name)
 
 
 @pytest.mark.parametrize("uri", ["package://robot/../other/a.stl", "model://robot/x/../../a.stl"])
@@ -175,7 +175,7 @@ def test_a_repository_may_be_called_otherwise_than_its_package(tmp_path):
 def test_a_package_xml_that_is_not_text_has_no_name(tmp_path):
     (manifest(tmp_path / "folder", "robot") / "package.xml").write_bytes(b"\xff<name>robot</name>")
     with pytest.raises(ResourceNotFoundError, match="no package 'robot'; tried "):
-        find_package("robot", [tmp_path], {})
+        ResourceFinder(None, [tmp_path], {}).package("robot")
 
 
 def test_a_package_is_found_where_gazebo_looks_for_it(tmp_path):
@@ -187,6 +187,6 @@ def test_a_package_is_found_where_gazebo_looks_for_it(tmp_path):
 def test_a_package_is_a_folder_of_an_installed_one_or_of_the_search_path(tmp_path):
     behind = make(tmp_path / "share/robot/a.stl").parent
     environ = ament(tmp_path)
-    assert find_package("robot", [tmp_path / "source"], environ) == behind
+    assert ResourceFinder(None, [tmp_path / "source"], environ).package("robot") == behind
     first = make(tmp_path / "source/robot/a.stl").parent
-    assert find_package("robot", [tmp_path / "source"], environ) == first
+    assert ResourceFinder(None, [tmp_path / "source"], environ).package("robot") == first

@@ -6,14 +6,14 @@ import os
 import pytest
 import yaml
 
-from arm_description.resources import find_package
+from arm_description.resources import resolve_uri
 from arm_description.view_fitting import View
 from arm_viewer.errors import ConfigError
 from arm_viewer.rviz_config import SWITCHES, PageConfig, read_config, read_config_file, write_config
 
 
 def test_the_arm_s_configuration_shows_links_frames_and_its_orbit():
-    path = find_package("arm_description") / "config" / "rviz" / "arm.rviz"
+    path = resolve_uri("package://arm_description/config/rviz/arm.rviz")
     config = read_config(path.read_bytes(), path.name)
     assert {switch for switch, is_shown in config.shown.items() if is_shown} == {
         "visual",

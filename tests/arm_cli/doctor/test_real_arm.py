@@ -9,7 +9,7 @@ from arm_cli.calibrate import joints_of
 from arm_cli.check import compare_limits
 from arm_cli.doctor.real_arm import examine_port
 from arm_cli.errors import ArmCliError, CommandUsageError
-from arm_description.resources import find_package
+from arm_description.resources import resolve_uri
 from arm_sim.bench.feetech_servos import FeetechServos
 from arm_sim.bench.mycobot_arm import EmulatedMyCobot
 from arm_sim.bench.serial_device import EmulatedPort, SerialDevice
@@ -67,7 +67,7 @@ def port(tmp_path: Path) -> Iterator[str]:
 
 
 def test_limits_of_the_description_and_of_the_arm_are_compared(port: str):
-    model = str(find_package("arm_description") / "urdf" / "arm.urdf.xacro")
+    model = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
     parameters = {"port": port, "reply_timeout": "1.0"}
     lines = list(compare_limits(model, (), "", "feetech", parameters))
     assert lines[0] == ("j0: the description has -2.570 to 2.570 rad, the arm -3.142 to 3.140 rad")

@@ -10,7 +10,7 @@ from lxml import etree
 
 from arm_cli.main import main
 from arm_description import parse_urdf
-from arm_description.resources import find_package
+from arm_description.resources import resolve_uri
 from arm_description.urdf.description_source import DescriptionSource, source_of
 from arm_description.xacro.expansion import arguments_of_text, expand_xacro_file
 from arm_gazebo.sensors.camera_reader import parse_cameras
@@ -30,7 +30,7 @@ SWITCHED = """\
 
 @pytest.fixture
 def launch_file():
-    return runpy.run_path(str(find_package("arm_gazebo") / "launch" / "arm_world.launch.py"))
+    return runpy.run_path(str(resolve_uri("package://arm_gazebo/launch/arm_world.launch.py")))
 
 
 @pytest.fixture
@@ -57,7 +57,7 @@ def test_what_is_given_is_passed_on(launch_file, defaults):
 
 def test_what_is_left_out_is_the_same_in_the_description(launch_file, defaults):
     assert launch_file["assignments"](**defaults) == ""
-    model = find_package("arm_description") / "urdf" / "arm.urdf.xacro"
+    model = resolve_uri("package://arm_description/urdf/arm.urdf.xacro")
     assert defaults.items() <= expand_xacro_file(model).arguments.items()
 
 
@@ -104,7 +104,7 @@ def test_a_world_without_a_name_is_no_folder(capsys):
 
 
 def plan_of(name: str, *, search: str = "/bin", **arguments: str):
-    file = find_package("arm_gazebo") / "launch" / name
+    file = resolve_uri("package://arm_gazebo/launch") / name
     environ = {**os.environ, "PATH": search}
     return expand_description(read_launch_file(file), arguments, environ, file)
 

@@ -5,7 +5,7 @@ import os
 import pytest
 
 from arm_control.hardware.info import parse_hardware_info
-from arm_description.resources import find_package
+from arm_description.resources import resolve_uri
 from arm_description.urdf.description_source import DescriptionSource, source_of, with_source
 from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.real_hardware import on_hardware
@@ -60,7 +60,7 @@ def test_what_cannot_be_is_refused(hardware, blocks, sentence):
 
 
 def plan_of(**arguments: str):
-    file = find_package("arm_gazebo") / "launch" / "arm_gazebo.launch.py"
+    file = resolve_uri("package://arm_gazebo/launch/arm_gazebo.launch.py")
     return expand_description(
         read_launch_file(file), arguments, {**os.environ, "PATH": "/bin"}, file
     )

@@ -8,7 +8,7 @@ import psutil
 import pytest
 from programs import Program
 
-from arm_description.resources import find_package
+from arm_description.resources import resolve_uri
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -21,7 +21,7 @@ def lives(process: psutil.Process) -> bool:
 
 
 def test_the_script_ends_all_that_it_has_started(tmp_path):
-    script = find_package("mycobot_bringup") / "scripts" / "mycobot_280_gazebo.sh"
+    script = resolve_uri("package://mycobot_bringup/scripts/mycobot_280_gazebo.sh")
     path = os.pathsep.join([os.path.dirname(sys.executable), os.environ["PATH"]])
     running = Program(
         ["bash", script, "viewer_port:=0", "use_rviz:=false"],
