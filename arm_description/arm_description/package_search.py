@@ -5,6 +5,7 @@ import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from arm_node.user_file import read_text
@@ -81,11 +82,11 @@ class PackageSearch:
         for given in self._package_path:
             for folder in self._in(given, name, MAX_DEPTH):
                 yield PackagePlace(folder, GIVEN)
-        beside = [folder for around in self._around() for folder in self._in(around, name, 1)]
+        beside = [folder for around in self._around for folder in self._in(around, name, 1)]
         for folder in beside:
             if self.is_package(folder, name):
                 yield PackagePlace(folder, BESIDE)
-        for share in share_folders(self._environ):
+        for share in self._shares:
             if share != _OWN_SHARE:
                 yield PackagePlace(share / name, AMENT)
         for models in model_folders(self._environ):
@@ -120,15 +121,19 @@ class PackageSearch:
             found.update((p, None) for p in file.parents[:FOLDERS_UP] if p.name == name)
         return tuple(found)
 
-    def _around(self) -> Iterator[Path]:
-        """Yield the folders that contain the neighbours of the file.
+    @cached_property
+    def _shares(self) -> list[Path]:
+        return share_folders(self._environ)
+
+    @cached_property
+    def _around(self) -> tuple[Path, ...]:
+        """The folders that contain the neighbours of the file.
 
         There are none for an installed file, whose neighbours are in AMENT_PREFIX_PATH.
         """
-        shares = set(share_folders(self._environ))
-        if not any(shares.intersection(file.parents) for file in self._files):
-            for file in self._files:
-                yield from _folders_around(file)
+        if any(set(self._shares).intersection(file.parents) for file in self._files):
+            return ()
+        return tuple(folder for file in self._files for folder in _folders_around(file))
 
     def _in(self, folder: Path, name: str, depth: int) -> Iterator[Path]:
         if folder.name == name or self.is_package(folder, name):

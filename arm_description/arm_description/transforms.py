@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from arm_node.rigid_transform import rpy_from_rows
 
 Array = NDArray[np.float64]
+_WXYZ = np.array([3, 0, 1, 2])
 
 
 def rotation_from_rpy(rpy: Sequence[float]) -> Array:
@@ -83,4 +84,4 @@ def rotation_from_quaternion(quaternion: Array) -> Array:
 
 def wxyz_from_rpy(rpy: Sequence[float]) -> Array:
     """Return the quaternion (w, x, y, z) of roll, pitch, yaw, in MuJoCo's order."""
-    return np.roll(quaternion_from_rpy(rpy), 1)
+    return quaternion_from_rpy(rpy)[_WXYZ]

@@ -14,18 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.errors import MeshFileError
-from arm_description.mesh.collada import read_collada
 from arm_description.mesh.data import LARGEST_BYTES, Color, MeshData, merged
-from arm_description.mesh.gltf import read_gltf
 from arm_description.mesh.obj import read_obj
-from arm_description.mesh.packed import read_packed, unpacked_bytes
 from arm_description.mesh.polygons import notched
 from arm_node.user_file import check_file, read_bytes
-
-READERS = {".gltf": read_gltf, ".glb": read_gltf}
-"""What checks a file, and corrects what trimesh would read wrongly, before trimesh reads it."""
-READERS_WITH_UNIT = {".dae": read_collada, ".3mf": read_packed}
-"""The same for files that name their unit; other formats are in m."""
 
 FACES_DIFFER = "; if its faces have different numbers of corners, export it as triangles"
 PICTURES = (".png", ".jpg", ".jpeg", ".tga", ".tif", ".tiff", ".bmp", ".gif", ".dds", ".webp")
@@ -40,11 +32,7 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
         MeshFileError: trimesh cannot read the file, or it would draw too much.
     """
     suffix = path.suffix.lower()
-    if suffix in READERS_WITH_UNIT:
-        content, unit = READERS_WITH_UNIT[suffix](path)
-    else:
-        read = READERS.get(suffix)
-        content, unit = read(path) if read else read_bytes(path, LARGEST_BYTES), 1.0
+    content, unit = _checked_content(path)
     # trimesh takes half a second to import, and STL files do not need it.
     import trimesh
 
@@ -70,6 +58,26 @@ def read_scene(path: Path) -> tuple[MeshData, ...]:
         hint = HINTS.get(suffix, "")
         raise MeshFileError(f"{type(error).__name__}: {error}{hint}") from error
     return parts
+
+
+def _checked_content(path: Path) -> tuple[bytes, float]:
+    """Return a file's bytes, corrected where trimesh would read them wrongly, and its unit in m."""
+    # The readers are imported here, because most robots have STL files only.
+    match path.suffix.lower():
+        case ".gltf" | ".glb":
+            from arm_description.mesh.gltf import read_gltf
+
+            return read_gltf(path), 1.0
+        case ".dae":
+            from arm_description.mesh.collada import read_collada
+
+            return read_collada(path)
+        case ".3mf":
+            from arm_description.mesh.packed import read_packed
+
+            return read_packed(path)
+        case _:
+            return read_bytes(path, LARGEST_BYTES), 1.0
 
 
 def _side_files(mesh: Path) -> Any:
@@ -179,8 +187,11 @@ def check_mesh_file(path: Path) -> None:
         check_file(path, LARGEST_BYTES)
     except (OSError, ValueError) as error:
         raise MeshFileError(str(error)) from error
-    if suffix == PACKED_SUFFIX and (size := unpacked_bytes(path)) > LARGEST_BYTES:
-        raise MeshFileError(f"it unpacks to {size} bytes; at most {LARGEST_BYTES} are read")
+    if suffix == PACKED_SUFFIX:
+        from arm_description.mesh.packed import unpacked_bytes
+
+        if (size := unpacked_bytes(path)) > LARGEST_BYTES:
+            raise MeshFileError(f"it unpacks to {size} bytes; at most {LARGEST_BYTES} are read")
 
 
 def read_mesh_file(path: Path) -> tuple[MeshData, ...]:

@@ -29,11 +29,13 @@ class MeshPart:
         drawn: the triangles of the visual.
         hull: vertices whose convex hull is the collision shape, shape (h, 3), m.
         triangles: number of triangles in the file, before simplification.
+        different: number of drawn triangles with different corners.
     """
 
     drawn: MeshData
     hull: NDArray[np.float64]
     triangles: int
+    different: int
 
     @classmethod
     def of(cls, mesh: MeshData) -> "MeshPart":
@@ -47,7 +49,7 @@ class MeshPart:
             drawn = simplified(mesh)
         except MeshFileError as error:
             raise MeshError(str(error)) from error
-        return cls(drawn, outermost(mesh.vertices), len(mesh.faces))
+        return cls(drawn, outermost(mesh.vertices), len(mesh.faces), drawn.different_faces())
 
     def scaled(self, scale: Scale) -> "MeshPart":
         """Return the part scaled along its axes, in m.
@@ -55,7 +57,7 @@ class MeshPart:
         Raises:
             MeshError: the part is too large or too small for MuJoCo's arithmetic.
         """
-        part = MeshPart(self.drawn.scaled(scale), self.hull * scale, self.triangles)
+        part = replace(self, drawn=self.drawn.scaled(scale), hull=self.hull * scale)
         farthest = float(np.abs(part.hull).max())
         size = float(np.ptp(part.hull, axis=0).max())
         if not farthest < MAX_EXTENT_M:

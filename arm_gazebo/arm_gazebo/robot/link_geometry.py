@@ -207,7 +207,7 @@ class LinkGeometry:
         self._reported.add(mesh.uri)
         parts = self._meshes.parts(mesh)
         given, drawn = sum(p.triangles for p in parts), sum(len(p.drawn.faces) for p in parts)
-        different = sum(p.drawn.different_faces() for p in parts)
+        different = sum(p.different for p in parts)
         # Each triangle twice is usual: exporters show both sides of a sheet that way.
         if 2 * different < drawn:
             self._report.warn(
