@@ -24,7 +24,6 @@ from arm_planning.constraints.constraints import (
 )
 from arm_planning.constraints.evaluation import ConstraintEvaluator, ConstraintResult
 from arm_planning.errors import MoveItErrorCode, PlanningError
-from arm_planning.execution.remaining import remaining
 from arm_planning.kinematics.group_kinematics import GroupKinematics
 from arm_planning.kinematics.settings import KinematicsSettings
 from arm_planning.pipeline import (
@@ -50,6 +49,7 @@ from arm_planning.scene.allowed_collisions import allowed_collisions
 from arm_planning.scene.frames import LinkPoses
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.srdf_maker import make_srdf
+from arm_planning.timing.driven_spline import remaining
 from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]

@@ -23,6 +23,8 @@ TOLERANCE = 1e-3
 """By what part a limit may be exceeded."""
 ROUNDING = 1e-9
 """By how many rad or m a position limit may be exceeded; by how much per s or s^2 a limit of 0."""
+SHORTEST_S = 1e-6
+"""A point ahead that is nearer than this is left out."""
 
 _HALVINGS = 2
 """How often a curve is halved before its control values are read: this makes the bounds tight."""
@@ -156,6 +158,37 @@ def chord_deviation(trajectory: TimedTrajectory) -> Array:
     fraction = halved(along[..., None])[..., 0]
     beyond = np.maximum(fraction.max(axis=0) - 1.0, -fraction.min(axis=0)).clip(min=0.0)
     return aside + beyond[:, None] * np.abs(chord)
+
+
+def remaining(trajectory: TimedTrajectory, time_s: float) -> TimedTrajectory:
+    """Return what a controller has yet to drive; its times start anew.
+
+    A polynomial of degree five is known by its ends, so the curve to the first point ahead is the
+    same as in the whole trajectory.
+
+    Args:
+        trajectory: the whole, of at least one point.
+        time_s: time since its start; before it, everything is ahead; after its end, the last point.
+    """
+    if time_s <= 0.0:
+        return trajectory
+    if time_s >= trajectory.duration_s - SHORTEST_S:
+        ahead = [rows[-1:] for rows in _rows(trajectory)]
+        return TimedTrajectory(trajectory.joints, np.zeros(1), *ahead)
+    first = int(np.searchsorted(trajectory.times_s, time_s + SHORTEST_S, side="right"))
+    here = DrivenSpline.of(trajectory).sample(np.array([time_s]))
+    return TimedTrajectory(
+        trajectory.joints,
+        np.concatenate(([0.0], trajectory.times_s[first:] - time_s)),
+        *(
+            np.concatenate((now, rows[first:]))
+            for now, rows in zip(here, _rows(trajectory), strict=True)
+        ),
+    )
+
+
+def _rows(trajectory: TimedTrajectory) -> tuple[Array, Array, Array]:
+    return trajectory.positions, trajectory.velocities, trajectory.accelerations
 
 
 def limit_violation(

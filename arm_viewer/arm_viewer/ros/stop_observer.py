@@ -13,7 +13,7 @@ from std_srvs.srv import SetBool
 
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_viewer.requests import SetEmergencyStop
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import TopicTypes, served
 from arm_viewer.ros.run_commander import ControlAnswers
 from arm_viewer.ros.topic_reader import TopicGroup
 
@@ -45,13 +45,7 @@ class StopObserver:
     def discover(self, topics: TopicTypes) -> None:
         """Look for new and disappeared emergency stops."""
         self._topics.discover(topics)
-        found = {
-            service
-            for service, types in self._node.get_service_names_and_types()
-            if service.endswith(SERVICE)
-            and SERVICE_TYPE in types
-            and self._node.count_services(service)
-        }
+        found = {f"{name}{SERVICE}" for name in served(self._node, SERVICE, SERVICE_TYPE)}
         for service in self._clients.keys() - found:
             self._node.destroy_client(self._clients.pop(service))
         for service in found - self._clients.keys():
