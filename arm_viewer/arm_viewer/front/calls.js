@@ -3,6 +3,7 @@
 The server makes the form from the type. What was typed is kept for this browser, by the name. */
 (() => {
   "use strict";
+  const { make } = armDock;
   const KEPT = "arm-call:";
   const MOST_SHOWN = 200;
   const NO_CONTACT = "No contact with the page's process: nothing was sent.";
@@ -22,23 +23,15 @@ The server makes the form from the type. What was typed is kept for this browser
     if (isShown) list();
   });
 
-  function make(tag, properties, ...children) {
-    const made = Object.assign(document.createElement(tag), properties);
-    made.append(...children);
-    return made;
-  }
-
-  const finder = make("input", { type: "search", placeholder: "Find a service, topic, action or node", size: 34 });
-  finder.setAttribute("aria-label", "Find what to call");
+  const finder = make("input", { type: "search", placeholder: "Find a service, topic, action or node", size: 34, "aria-label": "Find what to call" });
   const back = make("button", { type: "button", className: "arm-call-back", textContent: "‹ All" });
   tools.append(back, finder);
   const box = make("div", { className: "arm-calls" });
   const found = make("div", { className: "arm-call-list" });
   const form = make("form", { noValidate: true, autocomplete: "off" });
-  const answer = make("div", {});
-  const told = make("p", { className: "arm-call-told" });
+  const answer = make("div");
+  const told = make("p", { className: "arm-call-told", role: "status" });
   const text = make("pre", { className: "arm-call-answer" });
-  told.setAttribute("role", "status");
   answer.append(told, text);
   box.append(found, form, answer);
   body.append(box);

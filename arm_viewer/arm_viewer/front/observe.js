@@ -1,21 +1,12 @@
 /* The other parts of the dock: what nodes log and diagnose, topics, and the tree of frames. */
 (() => {
   "use strict";
+  const { make } = armDock;
   const ROW = 24;
   const KEPT = 5000;
   const LEVELS = { 10: "Debug", 20: "Info", 30: "Warning", 40: "Error", 50: "Fatal" };
   const HEALTH = ["OK", "Warning", "Error", "Stale"];
   const state = { part: "", measures: true, frame: "", within: "" };
-
-  function make(tag, fields = {}, ...children) {
-    const element = document.createElement(tag);
-    for (const [name, value] of Object.entries(fields)) {
-      if (name in element) element[name] = value;
-      else element.setAttribute(name, value);
-    }
-    element.append(...children);
-    return element;
-  }
 
   function search(label, act) {
     return make("input", { type: "search", placeholder: "Search", "aria-label": label, autocomplete: "off", spellcheck: false, oninput: act });

@@ -1,6 +1,7 @@
 /* The plots: panels of curves of any number of any topic, which the server appends to. */
 (() => {
   "use strict";
+  const { make } = armDock;
   const FRAME = 2;
   const KEPT = "arm-plots";
   const WINDOWS = [[5, "5 s"], [10, "10 s"], [30, "30 s"], [60, "1 min"], [300, "5 min"], [Infinity, "Whole run"]];
@@ -35,16 +36,6 @@
   let isDue = false;
   const wanted = new Map();
   const byNumber = new Map();
-
-  function make(tag, fields = {}, ...children) {
-    const element = document.createElement(tag);
-    for (const [name, value] of Object.entries(fields)) {
-      if (name in element) element[name] = value;
-      else element.setAttribute(name, value);
-    }
-    element.append(...children);
-    return element;
-  }
 
   function button(text, title, act) {
     return make("button", { type: "button", textContent: text, title, "aria-label": title, onclick: act });
