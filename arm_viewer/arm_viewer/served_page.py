@@ -9,6 +9,7 @@ TITLE = "Arm suite"
 SCRIPTS = (
     "software_rendering.js",
     "every_message.js",
+    "elements.js",
     "link.js",
     "channel.js",
     "poses.js",

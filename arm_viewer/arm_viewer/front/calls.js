@@ -3,7 +3,7 @@
 The server makes the form from the type. What was typed is kept for this browser, by the name. */
 (() => {
   "use strict";
-  const { make } = armDock;
+  const make = armMake;
   const KEPT = "arm-call:";
   const MOST_SHOWN = 200;
   const NO_CONTACT = "No contact with the page's process: nothing was sent.";

@@ -1,5 +1,4 @@
-/* The dock below viser's page: `armDock.add(name, show)` gives a part a tab, tools and a body, and
-`armDock.make` its elements.
+/* The dock below viser's page: `armDock.add(name, show)` gives a part a tab, tools and a body.
 
 `show(isShown)` is called when the part comes into sight or leaves it. Height, tab and whether the
 dock is open are kept for this browser. */
@@ -115,21 +114,10 @@ window.armDock = (() => {
     show();
   }
 
-  /* Make an element with these properties, or attributes where it has no such property. */
-  function make(tag, fields = {}, ...children) {
-    const element = document.createElement(tag);
-    for (const [name, value] of Object.entries(fields)) {
-      if (name in element) element[name] = value;
-      else element.setAttribute(name, value);
-    }
-    element.append(...children);
-    return element;
-  }
-
   function add(name, show) {
-    const tab = make("button", { type: "button", textContent: name, id: `arm-tab-${name}`, role: "tab" });
-    const body = make("div", { role: "tabpanel", "aria-labelledby": tab.id });
-    const tools = make("div", { className: "arm-tools" });
+    const tab = armMake("button", { type: "button", textContent: name, id: `arm-tab-${name}`, role: "tab" });
+    const body = armMake("div", { role: "tabpanel", "aria-labelledby": tab.id });
+    const tools = armMake("div", { className: "arm-tools" });
     tab.addEventListener("click", () => choose(name));
     parts.set(name, { tab, body, tools, show, isShown: false });
     return { body, tools };
@@ -137,5 +125,5 @@ window.armDock = (() => {
 
   // After the parts have added themselves.
   addEventListener("DOMContentLoaded", () => setTimeout(build, 0));
-  return { add, make, toggle, choose };
+  return { add, toggle, choose };
 })();

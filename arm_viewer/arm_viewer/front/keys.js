@@ -41,15 +41,10 @@
     const list = document.getElementById("arm-key-list");
     const rows = [...KEYS.map(({ shown, about }) => [shown, about]), ...OF_VISER];
     list.replaceChildren(
-      ...rows.flatMap(([shown, about]) => {
-        const term = document.createElement("dt");
-        const key = document.createElement("kbd");
-        const meaning = document.createElement("dd");
-        key.textContent = shown;
-        term.append(key);
-        meaning.textContent = about;
-        return [term, meaning];
-      }),
+      ...rows.flatMap(([shown, about]) => [
+        armMake("dt", {}, armMake("kbd", {}, shown)),
+        armMake("dd", {}, about),
+      ]),
     );
     if (!dialog.open) dialog.showModal();
   }

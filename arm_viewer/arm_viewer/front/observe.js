@@ -1,7 +1,7 @@
 /* The other parts of the dock: what nodes log and diagnose, topics, and the tree of frames. */
 (() => {
   "use strict";
-  const { make } = armDock;
+  const make = armMake;
   const ROW = 24;
   const KEPT = 5000;
   const LEVELS = { 10: "Debug", 20: "Info", 30: "Warning", 40: "Error", 50: "Fatal" };

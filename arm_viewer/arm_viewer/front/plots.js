@@ -1,7 +1,7 @@
 /* The plots: panels of curves of any number of any topic, which the server appends to. */
 (() => {
   "use strict";
-  const { make } = armDock;
+  const make = armMake;
   const FRAME = 2;
   const KEPT = "arm-plots";
   const WINDOWS = [[5, "5 s"], [10, "10 s"], [30, "30 s"], [60, "1 min"], [300, "5 min"], [Infinity, "Whole run"]];

@@ -98,27 +98,18 @@ A button that cannot act now keeps its focus and says why. What is older than tw
     list.dataset.shown = wanted;
     list.replaceChildren(
       ...bar.snapshots.map(([name, about]) => {
-        const row = document.createElement("li");
-        const text = document.createElement("span");
-        const small = document.createElement("small");
-        small.textContent = about;
-        text.append(name, small);
-        row.append(text, deed("Restore", name, "restore"), deed("Remove", name, "remove"));
-        return row;
+        const text = armMake("span", {}, name, armMake("small", {}, about));
+        return armMake("li", {}, text, deed("Restore", name, "restore"), deed("Remove", name, "remove"));
       }),
     );
   }
 
   function deed(label, name, what) {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.textContent = label;
-    button.setAttribute("aria-label", `${label} ${name}`);
-    button.addEventListener("click", () => {
+    const press = () => {
       run({ do: what, name });
       if (what === "restore") at("arm-snapshot-menu").hidePopover();
-    });
-    return button;
+    };
+    return armMake("button", { type: "button", "aria-label": `${label} ${name}`, onclick: press }, label);
   }
 
   function showStop() {

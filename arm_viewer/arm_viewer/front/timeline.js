@@ -104,12 +104,7 @@ The server plays and reads; this script shows what it says and sends what the us
     return run.differs_s === null ? "!" : "≠";
   }
 
-  const lines = (texts) =>
-    texts.map((text) => {
-      const line = document.createElement("li");
-      line.textContent = text;
-      return line;
-    });
+  const lines = (texts) => texts.map((text) => armMake("li", {}, text));
 
   function showSpeed() {
     const select = at("arm-deck-speed");
@@ -128,9 +123,7 @@ The server plays and reads; this script shows what it says and sends what the us
       const groups = new Map();
       for (const [topic, number] of open.numbers) {
         if (!groups.has(topic)) {
-          const group = document.createElement("optgroup");
-          group.label = topic;
-          groups.set(topic, group);
+          groups.set(topic, armMake("optgroup", { label: topic }));
         }
         groups.get(topic).append(new Option(number, JSON.stringify([topic, number])));
       }
@@ -143,28 +136,20 @@ The server plays and reads; this script shows what it says and sends what the us
   function showMarks() {
     at("arm-marks").replaceChildren(
       ...open.marks.map(([time, text]) => {
-        const row = document.createElement("li");
-        const words = document.createElement("span");
-        const small = document.createElement("small");
-        small.textContent = clockText(time);
-        words.append(text || "mark", small);
-        row.append(
-          words,
-          button("Go", `Go to ${text || clockText(time)}`, () => seek(time, true)),
-          button("Remove", `Remove ${text || clockText(time)}`, () => act("unmark", { time_s: time })),
+        const name = text || clockText(time);
+        return armMake(
+          "li",
+          {},
+          armMake("span", {}, text || "mark", armMake("small", {}, clockText(time))),
+          button("Go", `Go to ${name}`, () => seek(time, true)),
+          button("Remove", `Remove ${name}`, () => act("unmark", { time_s: time })),
         );
-        return row;
       }),
     );
   }
 
   function button(label, name, act) {
-    const made = document.createElement("button");
-    made.type = "button";
-    made.textContent = label;
-    made.setAttribute("aria-label", name);
-    made.addEventListener("click", act);
-    return made;
+    return armMake("button", { type: "button", "aria-label": name, onclick: act }, label);
   }
 
   function showMoment() {
@@ -365,16 +350,12 @@ The server plays and reads; this script shows what it says and sends what the us
     at("arm-folder").textContent = found.length ? `In ${folder}` : `No recording yet in ${folder}`;
     at("arm-found").replaceChildren(
       ...found.map(([name, bytes, changed, isRun]) => {
-        const row = document.createElement("li");
-        const words = document.createElement("span");
-        const small = document.createElement("small");
-        small.textContent = `${isRun ? "run, " : ""}${sizeText(bytes)}, ${new Date(1000 * changed).toLocaleString()}`;
-        words.append(name, small);
-        row.append(words, button("Open", `Open ${name}`, () => {
+        const about = `${isRun ? "run, " : ""}${sizeText(bytes)}, ${new Date(1000 * changed).toLocaleString()}`;
+        const deed = button("Open", `Open ${name}`, () => {
           showProblem("");
           act("open", { name });
-        }));
-        return row;
+        });
+        return armMake("li", {}, armMake("span", {}, name, armMake("small", {}, about)), deed);
       }),
     );
   }
@@ -382,9 +363,7 @@ The server plays and reads; this script shows what it says and sends what the us
   function showRecorder() {
     const { recording, starting, seconds, bytes, dropped, path, said } = recorder;
     const drops = starting ? "starting" : dropped ? `${dropped} messages DROPPED` : "nothing dropped";
-    const dot = document.createElement("span");
-    dot.className = "arm-dot";
-    dot.textContent = "●";
+    const dot = armMake("span", { className: "arm-dot" }, "●");
     at("arm-record-button").textContent = recording ? "Stop" : "Record";
     at("arm-topics").disabled = recording;
     at("arm-run-button").hidden = recording;

@@ -48,10 +48,7 @@ server, which answers with the problem, or with nothing. */
   }
 
   function showProblem(field, problem) {
-    const note = document.createElement("div");
-    note.setAttribute("role", "status");
-    note.className = "arm-problem";
-    note.textContent = problem;
+    const note = armMake("div", { role: "status", className: "arm-problem" }, problem);
     document.body.append(note);
     const place = field.getBoundingClientRect();
     note.style.top = `${place.bottom + 4}px`;
@@ -67,15 +64,16 @@ server, which answers with the problem, or with nothing. */
   function edit(field) {
     const slider = sliderOf(field).id;
     let sent = field.value;
-    const own = document.createElement("input");
+    const own = armMake("input", {
+      type: "text",
+      inputMode: "decimal",
+      autocomplete: "off",
+      spellcheck: false,
+      className: `${field.className} arm-editor`,
+      "aria-label": "position",
+      value: sent,
+    });
     editor = own;
-    own.type = "text";
-    own.inputMode = "decimal";
-    own.autocomplete = "off";
-    own.spellcheck = false;
-    own.className = `${field.className} arm-editor`;
-    own.setAttribute("aria-label", "position");
-    own.value = sent;
     coverField(field);
     document.body.append(own);
     const follow = () => coverField(field);

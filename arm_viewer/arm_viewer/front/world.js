@@ -7,12 +7,13 @@
   const TAB = "World";
   let timer = 0;
 
-  const veil = document.createElement("div");
-  Object.assign(veil, { id: "arm-drop", hidden: true });
-  veil.setAttribute("role", "status");
-  const picker = document.createElement("input");
-  Object.assign(picker, { type: "file", accept: ".urdf,.sdf,.stl", hidden: true });
-  picker.setAttribute("aria-label", "File to add to the world");
+  const veil = armMake("div", { id: "arm-drop", hidden: true, role: "status" });
+  const picker = armMake("input", {
+    type: "file",
+    accept: ".urdf,.sdf,.stl",
+    hidden: true,
+    "aria-label": "File to add to the world",
+  });
 
   function say(text, failed = false, lasts = true) {
     veil.textContent = text;
