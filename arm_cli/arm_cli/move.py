@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from arm_cli.ros.move_group import MoveGroupClient
     from arm_planning.robot.model import JointGroup, PlanningModel
 
+FULL_TURN_RAD = math.tau
 EXTRA_TIME_S = 5.0
 """How much longer than its planning time a plan may take to arrive."""
 
@@ -65,6 +67,17 @@ def move(options: argparse.Namespace) -> None:
         raise CommandUsageError(
             f"--pose takes X Y Z or X Y Z ROLL PITCH YAW, not {len(options.pose)} numbers"
         )
+    for angle in (options.pose or ())[3:]:
+        if abs(angle) > FULL_TURN_RAD:
+            raise CommandUsageError(
+                f"--pose takes angles in rad, and {angle:g} is {angle / FULL_TURN_RAD:.1f} turns; "
+                f"{angle:g} degrees are {math.radians(angle):.4g}"
+            )
+    for option in ("speed", "acceleration"):
+        if getattr(options, option) > 1.0:
+            raise CommandUsageError(
+                f"--{option} is a fraction of the limits, up to 1, not {getattr(options, option):g}"
+            )
     with connect(packages=PLANNING_PACKAGES) as session:
         from arm_cli.ros.move_group import MoveGroupClient
 
@@ -105,7 +118,7 @@ def _goal(
     if options.state is not None:
         return joint_goal(_state(model, group.name, options.state))
     if options.joints is not None:
-        given = _joints(group, options.joints)
+        given = _joints(model, group, options.joints)
         others = [joint for joint in group.joints if joint not in given]
         return joint_goal({**given, **client.positions(others)})
     x, y, z, *rpy = options.pose
@@ -125,14 +138,16 @@ def _state(model: "PlanningModel", group: str, name: str) -> Mapping[str, float]
         raise NoSuchNameError(str(error)) from error
 
 
-def _joints(group: "JointGroup", words: list[str]) -> dict[str, float]:
+def _joints(model: "PlanningModel", group: "JointGroup", words: list[str]) -> dict[str, float]:
     positions: dict[str, float] = {}
     for word in words:
         joint, _, text = word.partition("=")
         if joint not in group.joints:
-            raise NoSuchNameError(
-                f"group '{group.name}' has no joint '{joint}'; it has {', '.join(group.joints)}"
+            others = [name for name, other in model.groups.items() if joint in other.joints]
+            advice = (
+                f"--group {others[0]} has it" if others else f"it has {', '.join(group.joints)}"
             )
+            raise NoSuchNameError(f"group '{group.name}' has no joint '{joint}'; {advice}")
         try:
             positions[joint] = float(text)
         except ValueError:

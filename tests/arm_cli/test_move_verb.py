@@ -13,6 +13,15 @@ from arm_cli.main import main
         (["--state", "home", "--joints", "j=1"], "not allowed with argument --state"),
         (["--state", "home", "--speed", "0"], "--speed"),
         (["--pose", "x", "y", "z"], "--pose"),
+        (
+            ["--pose", "0.1", "0.1", "0.2", "0", "180", "0"],
+            "arm move: --pose takes angles in rad, and 180 is 28.6 turns; 180 degrees are 3.142\n",
+        ),
+        (
+            ["--state", "home", "--speed", "2"],
+            "arm move: --speed is a fraction of the limits, up to 1, not 2\n",
+        ),
+        (["--state", "home", "--acceleration", "50"], "arm move: --acceleration is a fraction"),
     ],
 )
 def test_a_mistake_in_the_arguments_is_named(words, sentence, capfd):

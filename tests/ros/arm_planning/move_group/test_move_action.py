@@ -1,6 +1,9 @@
 """Motions by move_group in MoveIt's ways: planned and executed, cancelled, stopped, blocked."""
 
 import math
+import os
+import sys
+from contextlib import closing
 from typing import Any
 
 import pytest
@@ -219,15 +222,17 @@ def test_a_part_of_a_controllers_joints_is_refused_and_named(planning, at_the_st
     assert "it has nothing for link2_to_link3" in ended.result.error_code.message
 
 
-def test_arm_move_moves_the_arm_to_a_named_state(planning, launched, at_the_start):
-    import os
-    import sys
+def arm_move(*words: str) -> Any:
+    return closing(Program([sys.executable, "-m", "arm_cli", "move", *words], os.environ))
 
-    words = [sys.executable, "-m", "arm_cli", "move", "--state", "home"]
-    program = Program(words, os.environ)
-    try:
-        said = program.succeed()
-    finally:
-        program.close()
-    assert "moved group 'arm'" in said
+
+def test_arm_move_moves_the_arm_to_a_named_state(planning, launched, at_the_start):
+    with arm_move("--state", "home") as program:
+        assert "moved group 'arm'" in program.succeed()
     assert planning.positions()[TURN] == pytest.approx(0.0, abs=NEAR)
+
+
+def test_arm_move_names_the_group_that_has_a_joint(planning, launched):
+    with arm_move("--joints", "gripper_controller=-0.3") as program:
+        said = program.fail()
+    assert "group 'arm' has no joint 'gripper_controller'; --group gripper has it" in said
