@@ -82,10 +82,10 @@ def _node(given: Mapping[str, float | str]) -> "Node":
     from geometry_msgs.msg import TransformStamped
     from rclpy.node import Node
     from rclpy.parameter import Parameter
-    from rclpy.qos import DurabilityPolicy, QoSProfile
     from tf2_msgs.msg import TFMessage
 
     from arm_node.parameters import declare
+    from arm_node.qos import LATCHED
 
     # As in ROS: several of them run at once, and nobody names each.
     suffix = "".join(random.choices(string.ascii_letters + string.digits, k=16))
@@ -109,8 +109,7 @@ def _node(given: Mapping[str, float | str]) -> "Node":
     ):
         for name, number in zip(names, numbers, strict=True):
             setattr(target, name, number)
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    node.create_publisher(TFMessage, "/tf_static", latched).publish(TFMessage(transforms=[message]))
+    node.create_publisher(TFMessage, "/tf_static", LATCHED).publish(TFMessage(transforms=[message]))
     node.get_logger().info(
         "Spinning until stopped - publishing transform\n"
         f"translation: ({', '.join(f'{number:f}' for number in position)})\n"

@@ -120,16 +120,16 @@ def description_of(node: "Node", process: "NodeProcess", options: argparse.Names
             return Path(options.file.removeprefix("file://")).read_text(encoding="utf-8")
         except (OSError, UnicodeError) as error:
             raise GazeboError(f"{options.file} cannot be read: {error}") from error
-    from rclpy.qos import DurabilityPolicy, QoSProfile
     from std_msgs.msg import String
+
+    from arm_node.qos import LATCHED
 
     texts: list[str] = []
 
     def take(message: Any) -> None:
         texts.append(message.data)
 
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    node.create_subscription(String, options.topic, take, latched)
+    node.create_subscription(String, options.topic, take, LATCHED)
     node.get_logger().info(f"Waiting messages on topic [{options.topic}].")
     while not texts:
         if process.wait(WAIT_S):

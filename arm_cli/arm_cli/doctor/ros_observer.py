@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from rclpy.parameter import parameter_value_to_python
-from rclpy.qos import DurabilityPolicy, QoSCompatibility, QoSProfile, qos_check_compatible
+from rclpy.qos import QoSCompatibility, qos_check_compatible
 from rclpy.serialization import deserialize_message
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from sensor_msgs.msg import JointState
@@ -29,13 +29,13 @@ from arm_cli.ros.listeners import ClockListener
 from arm_cli.ros.parameters import NodeParameters
 from arm_cli.ros.qos import MEASURING
 from arm_cli.ros.session import CommandSession
+from arm_node.qos import LATCHED
 
 COMMAND_TYPES = (
     "std_msgs/msg/Float64",
     "std_msgs/msg/Float64MultiArray",
     "trajectory_msgs/msg/JointTrajectory",
 )
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 COMMAND_NAMES = ("command", "commands", "joint_trajectory", "reference")
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from moveit_msgs.action import MoveGroup
 from moveit_msgs.msg import MoveItErrorCodes
 from rclpy.action.client import ActionClient
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
@@ -16,12 +16,12 @@ from arm_cli.names import absolute_name
 from arm_cli.ros.graph import Graph
 from arm_cli.ros.session import CommandSession
 from arm_description.urdf.parser import parse_urdf
+from arm_node.qos import LATCHED
 from arm_planning.robot.build import planning_model
 from arm_planning.robot.model import PlanningModel
 from arm_planning.robot.srdf import parse_srdf
 
 TIMEOUT_S = 5.0
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 URDF, SRDF = "robot_description", "robot_description_semantic"
 
 

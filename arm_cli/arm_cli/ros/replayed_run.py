@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point, Pose, Quaternion, Transform, TransformStamped, Vector3
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header, String
@@ -31,6 +30,7 @@ from arm_gazebo.world.changes import WorldChanges
 from arm_gazebo.world.contacts import contacts_of
 from arm_gazebo.world.entity import WORLD_FRAME, Entities
 from arm_gazebo.world.shapes import WorldShapes
+from arm_node.qos import LATCHED
 from arm_node.workarounds.message_template import serialized
 
 if TYPE_CHECKING:
@@ -159,7 +159,6 @@ PUBLISH_PERIOD_S = 0.02
 MARKER_EVERY = 5
 """Shapes and contacts are looked at with every fifth state."""
 HOLD_PERIOD_S = 0.1
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class RunPlayer:

@@ -7,7 +7,6 @@ from control_msgs.msg import JointJog
 from geometry_msgs.msg import TwistStamped, Vector3
 from moveit_msgs.msg import ServoStatus
 from moveit_msgs.srv import ServoCommandType
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState, Joy
 
 from arm_cli.errors import UnansweredError
@@ -17,6 +16,7 @@ from arm_cli.ros.parameters import NodeParameters, content_of
 from arm_cli.ros.service_call import call_service
 from arm_cli.ros.session import CommandSession
 from arm_cli.teleop.motions import JointMotion, Motion, TipMotion, gamepad_motion
+from arm_node.qos import NEWEST
 from arm_planning.errors import PlanningError
 from arm_planning.robot.model import JointGroup
 from arm_planning.servo.settings import SPEED_UNITS
@@ -71,10 +71,9 @@ class JogClient:
         self._type: int | None = None
         self._state: JointState | None = None
         self._gamepad: tuple[float, TipMotion] | None = None
-        best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-        node.create_subscription(JointState, "/joint_states", self._take_state, best_effort)
+        node.create_subscription(JointState, "/joint_states", self._take_state, NEWEST)
         node.create_subscription(ServoStatus, f"{NODE}/status", self._take_status, 10)
-        node.create_subscription(Joy, "/joy", self._take_gamepad, best_effort)
+        node.create_subscription(Joy, "/joy", self._take_gamepad, NEWEST)
         if not session.wait_until(lambda: self._state is not None, timeout_s=TIMEOUT_S):
             raise UnansweredError("nobody publishes /joint_states, so no command can be stamped")
 
@@ -84,7 +83,7 @@ class JogClient:
         if len(values) < len(names):
             raise UnansweredError(f"{NODE} does not have the parameters {', '.join(names)}")
         name, units, *scales = map(content_of, values)
-        model = MoveGroupClient(self._session).model()
+        model = MoveGroupClient(self._session, "/").model()
         try:
             group = model.group(name) if name else model.default_group()
         except PlanningError as error:

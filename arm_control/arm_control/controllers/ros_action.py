@@ -16,7 +16,7 @@ from rclpy.action.server import (
 from arm_control.controllers.goals import GoalController, GoalEnd, GoalOutcome
 from arm_control.controllers.ros_adapter import ControllerAdapter
 from arm_control.loop.ros_executor_bridge import EXECUTOR_TIMEOUT_S, let_executor_answer
-from arm_node.service_queue import SERVICE_QOS
+from arm_node.qos import SERVICE_QOS
 
 RESULT_TIMEOUT_S = 10
 """How long a result is kept for its client. With rclpy's default of 15 minutes, a stream of goals

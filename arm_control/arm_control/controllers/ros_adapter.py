@@ -21,7 +21,7 @@ from arm_control.loop.clock import Throttle
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.outbox import Outbox
 from arm_control.loop.ros_executor_bridge import run_on_executor
-from arm_node.service_queue import SERVICE_QOS
+from arm_node.qos import SERVICE_QOS
 from arm_node.workarounds.message_template import MessageTemplate, raw_sender
 
 SHORTEST_S, LONGEST_S = -(2.0**31), 2.0**31 - 1.0

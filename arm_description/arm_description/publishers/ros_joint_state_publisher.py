@@ -5,7 +5,6 @@ from collections.abc import Callable
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
@@ -20,10 +19,10 @@ from arm_description.publishers.joint_state_merge import JointStateMerge
 from arm_description.publishers.settings import JointPublisherSettings
 from arm_node.parameters import declare, given_parameters
 from arm_node.printable import printable, printable_message
+from arm_node.qos import LATCHED
 
 LOG_INTERVAL_S = 5.0
 _QUEUE = 10
-_LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class JointStatePublisher(Node):
@@ -55,7 +54,7 @@ class JointStatePublisher(Node):
         if description is not None:
             self._merge = JointStateMerge(read_joints(description), self._settings)
         self._publisher = self.create_publisher(JointState, "joint_states", _QUEUE)
-        self.create_subscription(String, "robot_description", self._on_description, _LATCHED_QOS)
+        self.create_subscription(String, "robot_description", self._on_description, LATCHED)
         for topic in self._settings.source_list:
             self.create_subscription(JointState, topic, self._on_source, _QUEUE)
         self._timer = self.create_timer(1.0 / self._settings.rate_hz, self._publish)

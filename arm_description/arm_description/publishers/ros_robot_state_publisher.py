@@ -14,7 +14,7 @@ from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile, qos_profile_sensor_data
+from rclpy.qos import QoSPolicyKind, QoSProfile, qos_profile_sensor_data
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
@@ -28,6 +28,7 @@ from arm_node.executor_thread import ExecutorThread
 from arm_node.names import listing
 from arm_node.parameters import declare_from, given_parameters
 from arm_node.printable import printable
+from arm_node.qos import LATCHED
 from arm_node.setting import settings_of
 from arm_node.user_file import read_text
 from arm_node.workarounds.clocks import StampClock
@@ -78,7 +79,6 @@ MAX_GROUPS = 32
 """Maximum sets of joint names whose message templates are kept."""
 
 _TF_QOS = QoSProfile(depth=100)
-_LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class StateThrottle:
@@ -156,14 +156,12 @@ class RobotStatePublisher(Node):
         self._moved_back_s = -math.inf
         self._throttle = StateThrottle(self._settings.publish_frequency_hz)
         self._groups: dict[tuple[str, ...], _TransformGroup] = {}
-        self._description_publisher = self.create_publisher(
-            String, "robot_description", _LATCHED_QOS
-        )
+        self._description_publisher = self.create_publisher(String, "robot_description", LATCHED)
         policies = (QoSPolicyKind.DEPTH, QoSPolicyKind.HISTORY, QoSPolicyKind.RELIABILITY)
         self._static_publisher = self.create_publisher(
             TFMessage,
             "/tf_static",
-            _LATCHED_QOS,
+            LATCHED,
             qos_overriding_options=QoSOverridingOptions(policies),
         )
         self._tf_publisher = self.create_publisher(

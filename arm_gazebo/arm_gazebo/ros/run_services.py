@@ -32,7 +32,7 @@ from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.loading import NamedWorld, WorldLoader, available_worlds
 from arm_gazebo.world.run_control import RunControl, RunState
 from arm_gazebo.world.spawn_model import FORMATS
-from arm_node.service_queue import SERVICE_QOS
+from arm_node.qos import SERVICE_QOS
 
 STATE_CODES = {
     Refusal.ALREADY_THERE: SetSimulationState.Response.ALREADY_IN_TARGET_STATE,

@@ -27,7 +27,7 @@ from arm_gazebo.state.snapshots import SnapshotStore
 from arm_gazebo.world.editor import LoopCall
 from arm_gazebo.world.run_control import RunControl
 from arm_node.executor_thread import ExecutorThread
-from arm_node.service_queue import SERVICE_QOS
+from arm_node.qos import SERVICE_QOS
 
 REPORT_PERIOD_S = 1.0
 DEPTH = 10

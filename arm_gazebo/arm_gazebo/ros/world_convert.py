@@ -30,7 +30,7 @@ from arm_gazebo.world.changes import Matrix, quaternion_of
 from arm_gazebo.world.entity import WORLD_FRAME, Category, EntityNote
 from arm_gazebo.world.entity_motion import Box, EntityFilter, EntityMotion, Volume
 from arm_gazebo.world.loading import NamedWorld
-from arm_node.service_queue import SERVICE_QOS
+from arm_node.qos import SERVICE_QOS
 
 Codes = Mapping[Refusal, int]
 ServiceRow = tuple[Any, str, Callable[[Any, Any], Any], Codes]

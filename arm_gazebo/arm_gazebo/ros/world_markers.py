@@ -10,17 +10,16 @@ from rclpy.clock_type import ClockType
 from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
 from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.entity import WORLD_FRAME
 from arm_gazebo.world.shapes import Solid, WorldShape, WorldShapes
+from arm_node.qos import LATCHED
 from arm_node.workarounds.message_template import MessageTemplate
 
 TOPIC = "world_markers"
-QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 MARKER_PERIOD_S = 0.1
 MOVED = 1e-4
 """Smallest change of a coordinate, in m or of a quaternion, that counts as motion."""
@@ -102,7 +101,7 @@ def watched_publisher(
             timer.reset()
 
     events = PublisherEventCallbacks(matched=match)
-    return node.create_publisher(MarkerArray, topic, QOS, event_callbacks=events)
+    return node.create_publisher(MarkerArray, topic, LATCHED, event_callbacks=events)
 
 
 def marker_of(shape: WorldShape) -> Marker:

@@ -8,7 +8,7 @@ from typing import Any
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 
-from arm_node.service_queue import SERVICE_QOS
+from arm_node.qos import SERVICE_QOS
 from arm_planning.errors import MoveItErrorCode
 from arm_planning.ros.convert import error_code
 

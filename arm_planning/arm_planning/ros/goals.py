@@ -12,7 +12,7 @@ from rclpy.action.server import ActionServer, CancelResponse, GoalResponse, Serv
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from arm_node.service_queue import SERVICE_QOS
+from arm_node.qos import SERVICE_QOS
 from arm_planning.errors import MoveItErrorCode
 from arm_planning.ros.answering import fill_error, report_fault
 from arm_planning.ros.trajectory_executor import STOPPED, ExecutionOutcome

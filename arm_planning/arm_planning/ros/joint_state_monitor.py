@@ -13,6 +13,7 @@ from sensor_msgs.msg import JointState
 
 from arm_node.names import listing
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.qos import NEWEST
 from arm_node.workarounds.clocks import CLOCK_TOPIC, USE_SIM_TIME, StampClock
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import NANOSECONDS, seconds
@@ -26,7 +27,6 @@ LATE_S = 0.25
 POLL_S = 0.001
 SILENCE_S = 0.25
 """A clock of which nothing is heard for this long stands still."""
-NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class JointStateMonitor:

@@ -7,11 +7,11 @@ from typing import Any
 
 from moveit_msgs.srv import GetGroupUrdf
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 from std_srvs.srv import Empty
 
 from arm_node.executor_thread import ExecutorThread
+from arm_node.qos import LATCHED
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import MoveItErrorCode
 from arm_planning.execution.controllers import controllers_of_settings
@@ -40,7 +40,6 @@ SERVICES = 8
 """Services that plan, at the same time."""
 THREADS = SERVICES + PLANS + 8
 """More than all that may wait at the same time: one is left to cancel goals."""
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 LOGGER = logging.getLogger("move_group")
 
 

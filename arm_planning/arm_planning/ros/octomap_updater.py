@@ -10,11 +10,11 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import PointCloud2
 
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.qos import NEWEST
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.body_filter import BodyFilter
 from arm_planning.collision.mesh_pieces import MeshPieces
@@ -28,7 +28,6 @@ from arm_planning.scene.frames import LinkPoses, frame_pose
 from arm_planning.scene.occupancy_map import OccupancyMap
 from arm_planning.scene.scene import PlanningScene
 
-LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 LOGGER = logging.getLogger("move_group")
 
 
@@ -61,7 +60,7 @@ class OctomapUpdater:
         # Not on simulation time: a map grows while the robot's clock stands still, too.
         steady, group = Clock(clock_type=ClockType.STEADY_TIME), MutuallyExclusiveCallbackGroup()
         for sensor in settings.sensors:
-            subscription = self._polled.subscribe(PointCloud2, sensor.topic, LATEST)
+            subscription = self._polled.subscribe(PointCloud2, sensor.topic, NEWEST)
             bodies = BodyFilter(model, meshes, sensor.scale, sensor.padding_m)
             update = partial(self._update, sensor, subscription, bodies)
             node.create_timer(1.0 / sensor.rate_hz, update, callback_group=group, clock=steady)

@@ -9,12 +9,12 @@ from typing import Any
 
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
 from arm_description.resources import ResourceFinder
 from arm_description.transforms import quaternion_from_rpy
 from arm_description.urdf.parser import parse_urdf
+from arm_node.qos import LATCHED
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import SettingError
@@ -145,12 +145,11 @@ def _seed(node: Node) -> int:
 def _from_topic(node: Node, topic: str) -> str:
     """Wait for a description on a topic, as upstream does for 10 s."""
     received: list[str] = []
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
     def take(message: String) -> None:
         received.append(message.data)
 
-    subscription = node.create_subscription(String, topic, take, latched)
+    subscription = node.create_subscription(String, topic, take, LATCHED)
     executor = SingleThreadedExecutor(context=node.context)
     executor.add_node(node)
     deadline_s = time.monotonic() + TOPIC_TIMEOUT_S

@@ -11,13 +11,13 @@ from moveit_msgs.msg import PlanningSceneWorld
 from mycobot_interfaces.srv import GetPlanningScene
 from numpy.typing import NDArray
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Image, PointCloud2
 from std_msgs.msg import Header, String
 
 from arm_description.errors import DescriptionError
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.qos import LATCHED, NEWEST
 from arm_planning.collision.seen_robot import PADDING_M, SeenRobot
 from arm_planning.errors import PerceptionError, PlanningError
 from arm_planning.perception.table_objects import Crop, TableTarget, objects_in_view
@@ -30,8 +30,6 @@ SERVICE = "get_planning_scene_mycobot"
 POLL_S, SENSORS_S = 0.02, 5.0
 """How often and how long it waits for a camera that has only just been subscribed to."""
 DESCRIPTION_TOPIC = "robot_description"
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 LOGGER = logging.getLogger("get_planning_scene_server")
 
 Wait = Callable[[float], bool]
@@ -55,7 +53,7 @@ class TableServer:
         }
         self._topics = " and ".join(topics.values())
         self._cloud, self._image = (
-            self._polled.subscribe(kind, topic, LATEST) for kind, topic in topics.items()
+            self._polled.subscribe(kind, topic, NEWEST) for kind, topic in topics.items()
         )
         self._latest: dict[type, Any] = {}
         self._frame = _text(node, "target_frame", "base_link")

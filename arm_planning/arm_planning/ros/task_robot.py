@@ -11,13 +11,13 @@ from moveit_msgs.msg import PlanningScene as SceneMessage
 from moveit_msgs.srv import ApplyPlanningScene, GetPlanningScene
 from rclpy.action.client import ActionClient
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
 from std_msgs.msg import String
 
 from arm_description.resources import ResourceFinder
 from arm_description.urdf.parser import parse_urdf
 from arm_node.process import NodeProcess
+from arm_node.qos import LATCHED
 from arm_planning.configuration import PLANNING, move_group_parameters
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planner import Planner
@@ -37,7 +37,6 @@ from arm_planning.tasks.solution import Solution
 
 POLL_S, REMINDER_S = 0.02, 10.0
 URDF, SRDF = "robot_description", "robot_description_semantic"
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class TaskRobot:

@@ -5,17 +5,16 @@ from types import MappingProxyType
 
 import numpy as np
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CameraInfo, Image
 
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.qos import NEWEST
 from arm_viewer.requests import ShowPictures
 from arm_viewer.ros.observer import TopicTypes, topics_of, type_name, used_types
 from arm_viewer.ros.topic_reader import TopicReader
 from arm_viewer.snapshot import CameraView, Picture, frame_name
 
 _IMAGE_TYPE = type_name(Image)
-_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class CameraObserver:
@@ -35,7 +34,7 @@ class CameraObserver:
         for topic in self._readers.keys() - found:
             self._readers.pop(topic).close()
         for topic in found - self._readers.keys():
-            self._readers[topic] = TopicReader(self._node, self._polled, CameraInfo, topic, _QOS)
+            self._readers[topic] = TopicReader(self._node, self._polled, CameraInfo, topic, NEWEST)
         if self.views.keys() - found:
             self._keep({topic: view for topic, view in self.views.items() if topic in found})
 
@@ -87,7 +86,7 @@ class ImageObserver:
         for topic in request.topics - self._readers.keys():
             # This node may use the topic with another type by now.
             if used.get(topic, _IMAGE_TYPE) == _IMAGE_TYPE:
-                self._readers[topic] = TopicReader(self._node, self._polled, Image, topic, _QOS)
+                self._readers[topic] = TopicReader(self._node, self._polled, Image, topic, NEWEST)
         kept = {t: picture for t, picture in self.pictures.items() if t in request.topics}
         self.pictures = MappingProxyType(kept)
 

@@ -5,18 +5,17 @@ from collections import deque
 from dataclasses import replace
 
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.qos import NEWEST
 from arm_viewer.ros.observer import TopicTypes
 from arm_viewer.snapshot import SimulationTime
 
 TOPIC = "/clock"
 PAUSED_AFTER_S = 0.5
 """After this time without a message the simulation counts as paused."""
-_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class ClockObserver:
@@ -26,7 +25,7 @@ class ClockObserver:
         """Subscribe."""
         self._node = node
         self._polled = polled
-        self._subscription = polled.subscribe(Clock, TOPIC, _QOS)
+        self._subscription = polled.subscribe(Clock, TOPIC, NEWEST)
         self._comparison = ClockComparison()
         self._arrived_s = 0.0
         self.time: SimulationTime | None = None

@@ -3,16 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from visualization_msgs.msg import Marker, MarkerArray
 
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.qos import LATCHED
 from arm_viewer.ros.observer import TopicTypes
 from arm_viewer.ros.topic_reader import TopicGroup
 from arm_viewer.snapshot import ContactForces, frame_name
 
 WORD = "contact_markers"
-_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class ContactObserver:
@@ -29,7 +28,7 @@ class ContactObserver:
     def show(self, wanted: bool) -> None:
         """Subscribe, or end the subscription and forget the contacts."""
         if wanted and self._topics is None:
-            self._topics = TopicGroup(self._node, self._polled, MarkerArray, WORD, _QOS)
+            self._topics = TopicGroup(self._node, self._polled, MarkerArray, WORD, LATCHED)
         elif not wanted and self._topics is not None:
             for reader in self._topics.readers():
                 reader.close()

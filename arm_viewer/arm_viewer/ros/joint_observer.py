@@ -14,6 +14,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.qos import NEWEST
 from arm_viewer.ros.observer import TopicTypes, topics_of
 from arm_viewer.ros.topic_reader import TopicGroup, TopicReader
 from arm_viewer.snapshot import JointReading, JointStates
@@ -87,7 +88,6 @@ def _column(values: Sequence[float], count: int) -> Sequence[float]:
 
 SUFFIX = "/introspection_data/full"
 KIND, INTERFACE = "state_interface.", "/position"
-_INTROSPECTION_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class HardwareObserver:
@@ -121,7 +121,7 @@ class HardwareObserver:
             self.positions = {n: p for n, p in self.positions.items() if n != _namespace(topic)}
         for topic in wanted - self._readers.keys():
             self._readers[topic] = TopicReader(
-                self._node, self._polled, self._message_class, topic, _INTROSPECTION_QOS
+                self._node, self._polled, self._message_class, topic, NEWEST
             )
 
     def collect(self, now_s: float) -> None:

@@ -6,11 +6,11 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
 from arm_description.urdf.robot import Robot
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.qos import LATCHED
 from arm_viewer.planning_requests import PlanningRequest
 from arm_viewer.ros.observer import TopicTypes, served
 from arm_viewer.ros.topic_reader import TopicGroup
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 SERVICE = "/move_action/_action/send_goal"
 SERVICE_TYPE = "moveit_msgs/action/MoveGroup_SendGoal"
 SEMANTIC = "robot_description_semantic"
-_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _logger = logging.getLogger(__name__)
 
 
@@ -46,7 +45,7 @@ class PlanningObserver:
         self._polled = polled
         self._latest = latest
         self._clock = clock
-        self._topics = TopicGroup(node, polled, String, SEMANTIC, _LATCHED)
+        self._topics = TopicGroup(node, polled, String, SEMANTIC, LATCHED)
         self._texts: dict[str, str] = {}
         self._clients: dict[str, ObservedMoveGroup] = {}
         self._made_from: dict[str, tuple[Robot, str]] = {}

@@ -14,13 +14,13 @@ from arm_description.resources import ResourceFinder
 from arm_description.urdf.description import RobotDescription
 from arm_description.urdf.parser import parse_urdf
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.qos import LATCHED
 from arm_node.rigid_transform import RigidTransform
 from arm_viewer.ros.observer import TopicTypes
 from arm_viewer.ros.topic_reader import TopicGroup, TopicReader
 from arm_viewer.snapshot import Description, Transform, frame_name
 
 DESCRIPTION_WORD = "robot_description"
-_DESCRIPTION_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class DescriptionObserver:
@@ -33,7 +33,7 @@ class DescriptionObserver:
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
         """Subscribe in the root namespace."""
-        self._topics = TopicGroup(node, polled, String, DESCRIPTION_WORD, _DESCRIPTION_QOS)
+        self._topics = TopicGroup(node, polled, String, DESCRIPTION_WORD, LATCHED)
         self._received_s: dict[str, float] = {}
         self.descriptions: MappingProxyType[str, Description] = MappingProxyType({})
         self.lost: frozenset[str] = frozenset()

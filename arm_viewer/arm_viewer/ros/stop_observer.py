@@ -6,12 +6,12 @@ from types import MappingProxyType
 
 from rclpy.client import Client
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
 from arm_node.polled_subscriptions import PolledSubscriptions
+from arm_node.qos import LATCHED
 from arm_viewer.requests import SetEmergencyStop
 from arm_viewer.ros.observer import TopicTypes, served
 from arm_viewer.ros.run_commander import ControlAnswers
@@ -22,7 +22,6 @@ SERVICE_TYPE = "std_srvs/srv/SetBool"
 ACTIVE = "emergency_stop/active"
 ANSWER_S = 3.0
 """A stop that is not confirmed within this time is reported."""
-_LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class StopObserver:
@@ -36,7 +35,7 @@ class StopObserver:
         """Subscribe in the root namespace; problems go to `answers`."""
         self._node = node
         self._answers = answers
-        self._topics = TopicGroup(node, polled, Bool, ACTIVE, _LATCHED_QOS)
+        self._topics = TopicGroup(node, polled, Bool, ACTIVE, LATCHED)
         self._received_s: dict[str, float] = {}
         self._clients: dict[str, Client] = {}
         self._pending: dict[Future, tuple[str, float]] = {}

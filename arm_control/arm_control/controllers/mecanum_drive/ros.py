@@ -5,7 +5,6 @@ from control_msgs.msg import MecanumDriveControllerState
 from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from tf2_msgs.msg import TFMessage
 
 from arm_control.controllers.mecanum_drive.controller import (
@@ -15,9 +14,9 @@ from arm_control.controllers.mecanum_drive.controller import (
 from arm_control.controllers.mecanum_drive.kinematics import Array, MecanumOdometry, MecanumTwist
 from arm_control.controllers.ros_adapter import ControllerAdapter, seconds_of
 from arm_control.controllers.ros_odometry import OdometryPublisher
+from arm_node.qos import NEWEST
 from arm_node.workarounds.message_template import MessageTemplate
 
-REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 TWIST = (0, 1, 5)
 """Indices in the velocities along and about x y z that a mecanum drive has."""
 
@@ -39,7 +38,7 @@ class MecanumDriveAdapter(ControllerAdapter[MecanumDriveController]):
             TWIST,
         )
         self.controller.sink = _MecanumPublisher(publisher, state, parameters.odom_frame_id)
-        self.subscribe(TwistStamped, "~/reference", self._take_reference, REFERENCE_QOS)
+        self.subscribe(TwistStamped, "~/reference", self._take_reference, NEWEST)
 
     def _take_reference(self, message: TwistStamped) -> None:
         if not self.takes_commands("~/reference"):

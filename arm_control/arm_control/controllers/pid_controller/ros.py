@@ -8,7 +8,7 @@ import numpy as np
 from control_msgs.msg import MultiDOFCommand, MultiDOFStateStamped, PidState, SingleDOFState
 from numpy.typing import NDArray
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSPresetProfiles, QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSPresetProfiles
 from std_srvs.srv import SetBool
 
 from arm_control.controllers.pid_controller.controller import (
@@ -19,9 +19,8 @@ from arm_control.controllers.pid_controller.controller import (
 )
 from arm_control.controllers.ros_adapter import ControllerAdapter, duration_message, time_message
 from arm_node.names import as_node_name
+from arm_node.qos import NEWEST
 from arm_node.workarounds.message_template import MessageTemplate
-
-REFERENCE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class PidControllerAdapter(ControllerAdapter[PidController]):
@@ -38,9 +37,9 @@ class PidControllerAdapter(ControllerAdapter[PidController]):
         ]
         self.controller.sink = _PidStatePublisher(publisher, parameters.state_dof_names, terms)
         self.serve(SetBool, "~/set_feedforward_control", self._set_feedforward)
-        self.subscribe(MultiDOFCommand, "~/reference", self._take_reference, REFERENCE_QOS)
+        self.subscribe(MultiDOFCommand, "~/reference", self._take_reference, NEWEST)
         if parameters.use_external_measured_states:
-            self.subscribe(MultiDOFCommand, "~/measured_state", self._take_measured, REFERENCE_QOS)
+            self.subscribe(MultiDOFCommand, "~/measured_state", self._take_measured, NEWEST)
 
     def _take_reference(self, message: MultiDOFCommand) -> None:
         if self.takes_commands("~/reference"):

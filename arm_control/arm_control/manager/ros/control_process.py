@@ -12,7 +12,6 @@ from math import isnan, nan
 
 from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock as ClockMessage
 
 from arm_control.errors import ArmControlError, HardwareInfoError
@@ -34,9 +33,9 @@ from arm_control.manager.ros.controller_node import controllers_executor
 from arm_description.errors import DescriptionError
 from arm_description.urdf.description import RobotDescription
 from arm_node.process import EXIT_FAILED, NodeProcess
+from arm_node.qos import NEWEST
 from arm_node.workarounds.discovery import first_node
 
-CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 ROUNDING_S = 1e-6
 
 
@@ -91,7 +90,7 @@ class SimulatedClock:
             enable_rosout=False,
             start_parameter_services=False,
         )
-        node.create_subscription(ClockMessage, "/clock", take, CLOCK_QOS)
+        node.create_subscription(ClockMessage, "/clock", take, NEWEST)
         executor.add_node(node)
         return node
 

@@ -12,7 +12,6 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import String
 
 from arm_control.loop.priority import LoopPriority
@@ -22,14 +21,11 @@ from arm_control.manager.ros.parameter_node import TYPE_OF_CONTROLLER, Parameter
 from arm_control.manager.settings import ManagerSettings
 from arm_control.manager.switch_planner import Strictness
 from arm_control.parameters import ParameterSpec, build_parameters, specs_of
+from arm_node.qos import LATCHED
 from arm_node.ros_logging import LoggerLevelServices
 from arm_node.workarounds.clocks import ProcessClock
 
 logger = logging.getLogger("controller_manager")
-
-LATCHED_QOS = QoSProfile(
-    depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
-)
 
 
 class DescriptionTopic:
@@ -43,7 +39,7 @@ class DescriptionTopic:
         self._in_use = in_use
         self._latest: str | None = None
         self._subscription = node.create_subscription(
-            String, "robot_description", self._take, LATCHED_QOS
+            String, "robot_description", self._take, LATCHED
         )
 
     @property

@@ -33,7 +33,6 @@ from arm_control.manager.node_arguments import controller_arguments
 from arm_control.manager.registry import controller_types, is_chainable
 from arm_control.manager.ros.control_plane import ControlPlane
 from arm_control.manager.ros.controller_manager_node import (
-    LATCHED_QOS,
     ControllerManagerNode,
     DescriptionTopic,
 )
@@ -50,8 +49,8 @@ from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_description.urdf.description import Description, text_of
 from arm_node.executor_thread import ExecutorThread
 from arm_node.names import as_node_name
+from arm_node.qos import LATCHED, SERVICE_QOS
 from arm_node.ros_logging import LoggerLevelServices
-from arm_node.service_queue import SERVICE_QOS
 
 logger = logging.getLogger("controller_manager")
 
@@ -293,7 +292,7 @@ class ControllerManagerServer:
         ]
         self._loop = loop
         node.add_post_set_parameters_callback(self._parameters_changed)
-        self._activity = node.create_publisher(ControllerManagerActivity, "~/activity", LATCHED_QOS)
+        self._activity = node.create_publisher(ControllerManagerActivity, "~/activity", LATCHED)
         self._snapshot = self._plane.on_loop(lambda: ManagerSnapshot(manager))
         self._plane.on_loop(self._observe)
         refusals = RefusedRequests()

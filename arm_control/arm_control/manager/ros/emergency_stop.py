@@ -6,7 +6,6 @@ from typing import Any
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
@@ -15,11 +14,10 @@ from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.ros_executor_bridge import call_on_loop
 from arm_control.manager.controller_manager import ControllerManager
-from arm_node.service_queue import SERVICE_QOS
+from arm_node.qos import LATCHED, SERVICE_QOS
 
 NAME = "emergency_stop"
 DEPTH = 10
-LATCHED_QOS = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class EmergencyStopServer:
@@ -42,7 +40,7 @@ class EmergencyStopServer:
         self._loop = loop
         self._managers = tuple(managers)
         group = MutuallyExclusiveCallbackGroup()
-        self._active = node.create_publisher(Bool, f"{NAME}/active", LATCHED_QOS)
+        self._active = node.create_publisher(Bool, f"{NAME}/active", LATCHED)
         self._published: bool | None = None
         # rclpy accepts a coroutine, but its annotations do not.
         answer: Any = self._answer

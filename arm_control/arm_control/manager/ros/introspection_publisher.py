@@ -7,7 +7,6 @@ from concurrent.futures import TimeoutError as FutureTimeoutError
 from typing import TYPE_CHECKING, Any
 
 from builtin_interfaces.msg import Time
-from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from arm_control.errors import LoopStoppedError
 from arm_control.loop.control_loop import ControlLoop
@@ -18,6 +17,7 @@ from arm_control.manager.introspection import (
     ManagerStatistics,
     NamedValues,
 )
+from arm_node.qos import LATCHED
 
 if TYPE_CHECKING:
     from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
@@ -127,9 +127,8 @@ class StatisticsTopic:
         # Imported here, so that a start does not load these messages.
         from pal_statistics_msgs.msg import Statistic, Statistics, StatisticsNames, StatisticsValues
 
-        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._full = node.create_publisher(Statistics, f"{prefix}/full", DEPTH)
-        self._names = node.create_publisher(StatisticsNames, f"{prefix}/names", latched)
+        self._names = node.create_publisher(StatisticsNames, f"{prefix}/names", LATCHED)
         self._values = node.create_publisher(StatisticsValues, f"{prefix}/values", DEPTH)
         self._make_statistic: Callable[..., Any] = Statistic
         self._message = Statistics()
