@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_description.urdf.robot import Capsule
 from arm_node.names import describe_known
 from arm_planning.collision.contact import BodyKind
 from arm_planning.collision.geoms import CUBE, Geom, link_geoms, object_geoms, object_placement
@@ -120,8 +121,9 @@ class SceneCompiler:
 
     Distances are exact as well, where there is a margin, not only contacts. MuJoCo's own function
     for two boxes is faster than that for other shapes, but its distances are wrong by centimetres;
-    so the robot's boxes are made of corners. And each pair of the robot's own geoms has a margin
-    of its own, if they are not too many.
+    so the robot's boxes are made of corners. Those of the world are as well if the robot has a
+    capsule: a capsule that goes right through a box, both ends outside, is no contact for MuJoCo.
+    And each pair of the robot's own geoms has a margin of its own, if they are not too many.
 
     Args:
         model: the robot.
@@ -150,6 +152,9 @@ class SceneCompiler:
         self._attached: list[_Part] = []
         self._objects: list[_Part] = []
         self._assets: dict[int, tuple[str, Array]] = {}
+        self._boxes: dict[tuple[float, float, float], Array] = {}
+        shapes = [shape.geometry for link in self._robot.links for shape in link.collisions]
+        self._has_capsule = any(isinstance(shape, Capsule) for shape in shapes)
 
     def compile(self) -> CompiledScene:
         """Return the compiled scene.
@@ -372,8 +377,8 @@ class SceneCompiler:
 
     def _add_geom(self, part: _Part, geom: Geom, bits: tuple[int, int]) -> None:
         corners = geom.corners
-        if geom.type == mujoco.mjtGeom.mjGEOM_BOX and bits != OF_WORLD:
-            corners = CUBE * geom.size
+        if geom.type == mujoco.mjtGeom.mjGEOM_BOX and (bits != OF_WORLD or self._has_capsule):
+            corners = self._boxes.setdefault(geom.size, CUBE * geom.size)
         hull = int(corners is not None and len(corners) > SEARCHED_CORNERS)
         position, quaternion = geom.placement
         added = part.body.add_geom(

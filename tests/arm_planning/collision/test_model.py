@@ -65,6 +65,22 @@ def test_links_collide_with_each_other():
     assert pairs(slider(), -0.79) == set()
 
 
+@pytest.mark.parametrize("roll", [0.0, 0.5, 1.0])
+def test_a_capsule_through_a_board_collides(roll: float):
+    # MuJoCo finds no contact of a capsule with a box if both of its ends are outside.
+    rod = collision("<capsule radius='0.02' length='0.3'/>")
+    urdf = robot(
+        link("base"),
+        link("rod", rod.replace("<origin", f"<origin rpy='{roll} 0 0'")),
+        joint("slide", "base", "rod", kind="prismatic", axis="0 0 1"),
+    )
+    board = thing("board", Box((0.6, 0.6, 0.02)), 0.0, 0.0, 0.0)
+    model = CollisionModel(model_of(urdf, arm=(("slide",), "")), scene(board))
+    for q in (0.0, 0.02, 0.05):
+        assert pairs(model, q) == {("rod", "board")}
+    assert pairs(model, 0.5) == set()
+
+
 def test_many_states_are_counted_up_to_the_first_that_collides():
     states = np.array([[0.0], [-0.79], [-0.81], [0.0], [-0.9]])
     assert slider().free_count(states) == 2
