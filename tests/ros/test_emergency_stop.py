@@ -7,6 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from arm_cli.doctor.verb import examine_running
+from arm_cli.ros.connection import connect
+
 pytestmark = pytest.mark.ros
 
 START_TIMEOUT_S = 120.0
@@ -157,6 +160,8 @@ def test_one_robot_stops_and_the_other_goes_on(arms, goals, client):
 def test_all_stop_by_the_topic_and_are_released_by_the_verb(arms, client, latched):
     from std_msgs.msg import Bool, Float64MultiArray
 
+    from arm_cli.doctor.ros_observer import observe
+
     commands = client.publisher(Float64MultiArray, "/right/mover/commands")
     stop = client.publisher(Bool, "/emergency_stop")
     arms.move("right", lambda: commands.publish(Float64MultiArray(data=[-0.6] * len(LEFT))))
@@ -167,10 +172,10 @@ def test_all_stop_by_the_topic_and_are_released_by_the_verb(arms, client, latche
 
     def diagnosed() -> bool:
         # One look may be too short to find the robots on a busy machine.
-        done = subprocess.run(
-            [sys.executable, "-m", "arm_cli", "doctor"], capture_output=True, text=True, timeout=120
-        )
-        return "an emergency stop is latched (/emergency_stop/active" in done.stdout
+        with connect() as session:
+            found = examine_running(observe(session))
+        latched = "an emergency stop is latched (/emergency_stop/active"
+        return any(latched in finding.sentence for finding in found)
 
     client.wait_until(diagnosed, "the doctor tells the stop", START_TIMEOUT_S)
     # Neither a command nor a false on the topic moves anything.
