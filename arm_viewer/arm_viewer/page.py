@@ -40,8 +40,6 @@ from arm_viewer.scene.first_view import FirstView
 from arm_viewer.scene.frames import Frames
 from arm_viewer.scene.poses import Poses
 from arm_viewer.snapshot import Snapshot
-from arm_viewer.typed_numbers import KIND as TYPED_NUMBER
-from arm_viewer.typed_numbers import typed_number_handler
 
 TICK_S = 1.0 / 30.0
 UNWATCHED_TICK_S = 0.2
@@ -98,8 +96,6 @@ async def _build(
     timeline = () if recordings is None else (TimelinePanel(server.channel, *recordings),)
     for panel in timeline:
         panel.build(gui)
-    joints = JointPanel(send)
-    server.channel.on(TYPED_NUMBER, typed_number_handler(joints.take_typed))
     view = FirstView(server)
     world = WorldPanel(server.scene, server.channel, send)
 
@@ -109,7 +105,12 @@ async def _build(
     robots = RobotPanel(server.scene, frames, poses, view, world.choose, send, is_watched)
     overlays = OverlayPanel(server.scene, frames)
     main = {
-        "Robot": (joints, robots, overlays, ConfigPanel(server, robots, view, config)),
+        "Robot": (
+            JointPanel(server.channel, send),
+            robots,
+            overlays,
+            ConfigPanel(server, robots, view, config),
+        ),
         "World": (world,),
         "Control": (ControllerPanel(send),),
         "System": (GraphPanel(),),

@@ -2,7 +2,7 @@
 
 import pytest
 
-from arm_viewer.ros import controller_observer, property_observer, run_observer, world_client
+from arm_viewer.ros import controller_observer, run_observer, world_client
 from arm_viewer.ros.controller_observer import ControllerObserver
 from arm_viewer.ros.run_observer import RunObserver
 from arm_viewer.ros.world_client import WorldClient
@@ -47,7 +47,7 @@ def asked(monkeypatch):
         def close(self):
             pass
 
-    for module in (controller_observer, property_observer, run_observer, world_client):
+    for module in (controller_observer, run_observer, world_client):
         monkeypatch.setattr(module, "ServiceCaller", Caller)
     return asked
 

@@ -12,12 +12,16 @@ from viser import GuiApi, GuiEvent
 
 from arm_description.publishers.joint_state_merge import position_range
 from arm_description.urdf.robot import Joint
+from arm_viewer.channel import Browser, Channel, Message
 from arm_viewer.joint_move import joint_drives
 from arm_viewer.panels.panel import in_order, note, show
 from arm_viewer.requests import MoveJoints, Send
 from arm_viewer.snapshot import Description, JointReading, Snapshot
-from arm_viewer.typed_numbers import number_typed
 
+TYPED_NUMBER = "typed_number"
+"""Kind of a browser's message: a text typed beside a slider. The answer has its number."""
+ROUNDING = 1e-9
+"""How far beyond a limit a typed number may be, in rad or m; it counts as the limit."""
 STEPS = 1000
 STILL_S = 0.5
 MAX_HOLD_S = 5.0
@@ -162,13 +166,15 @@ def _position(reading: JointReading | None) -> str:
 class JointPanel:
     """A group of sliders for each robot."""
 
-    def __init__(self, send: Send) -> None:
-        """Send moves with `send`."""
+    def __init__(self, channel: Channel, send: Send) -> None:
+        """Take typed numbers from the channel, and send moves with `send`."""
+        self._channel = channel
         self._send = send
         self._groups: dict[str, _RobotSliders] = {}
 
     def build(self, gui: GuiApi) -> None:
         """Create the folder for the sliders, which appear with the robots."""
+        self._channel.on(TYPED_NUMBER, self._take_typed)
         self._gui = gui
         self._place = gui.add_folder(None)
 
@@ -185,13 +191,13 @@ class JointPanel:
                     group = self._groups[topic] = _RobotSliders(self._gui, description, self._send)
             group.update(snapshot)
 
-    def take_typed(self, slider: str, text: str) -> str:
-        """Move a joint to the number typed beside its slider; return the problem, or "".
+    def _take_typed(self, message: Message, browser: Browser) -> None:
+        number = int(message.number("number"))
+        problem = self._move_typed(message.text("slider"), message.text("text"))
+        browser.send(TYPED_NUMBER, {"number": number, "problem": problem})
 
-        Args:
-            slider: identifier of the slider on the page.
-            text: the typed text.
-        """
+    def _move_typed(self, slider: str, text: str) -> str:
+        """Move a joint to the number typed beside its slider; return the problem, or ""."""
         for group in self._groups.values():
             found = group.slider(slider)
             if found is not None:
@@ -314,3 +320,20 @@ class _JointSlider:
         if event.client_id is not None:
             self._held.hold(self.value, time.monotonic())
             self._move()
+
+
+def number_typed(text: str, name: str, lower: float, upper: float) -> float:
+    """Return the number in a text.
+
+    Raises:
+        ValueError: the text is not a number, or the number is not between `lower` and `upper`;
+            the message is a sentence.
+    """
+    try:
+        number = float(text)
+    except ValueError:
+        raise ValueError(f"'{text}' is not a number; write it like -0.5 or 1e-2") from None
+    # Also rejects NaN.
+    if not lower - ROUNDING <= number <= upper + ROUNDING:
+        raise ValueError(f"'{name}' goes from {lower:g} to {upper:g}; {number:g} is outside")
+    return min(max(number, lower), upper)

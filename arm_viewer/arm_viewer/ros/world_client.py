@@ -10,7 +10,7 @@ from typing import Any
 
 from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion, Twist, Vector3
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from rcl_interfaces.srv import SetParametersAtomically
+from rcl_interfaces.srv import GetParameters, SetParametersAtomically
 from rclpy.node import Node
 from simulation_interfaces.msg import EntityCategory, EntityFilters, EntityState, Resource
 from simulation_interfaces.srv import (
@@ -27,13 +27,6 @@ from simulation_interfaces.srv import (
 
 from arm_node.rigid_transform import RigidTransform, Vector
 from arm_viewer.ros.observer import TopicTypes
-from arm_viewer.ros.property_observer import (
-    FRICTION,
-    GRAVITY,
-    MASS,
-    PropertyObserver,
-    parameter_of,
-)
 from arm_viewer.ros.service_caller import ServiceCaller
 from arm_viewer.world.dropped_file import FileCheck
 from arm_viewer.world.world_view import (
@@ -58,6 +51,8 @@ from arm_viewer.world_requests import (
 
 SERVICE = "/get_entities_states"
 SET_PARAMETERS = "/simulation/set_parameters_atomically"
+GET_PARAMETERS = "/simulation/get_parameters"
+GRAVITY, MASS, FRICTION = "gravity", "mass", "friction"
 SERVICES = {
     SERVICE: GetEntitiesStates,
     "/get_entities": GetEntities,
@@ -108,7 +103,7 @@ class WorldClient:
         self._node = node
         self._is_watched = is_watched
         self._callers: dict[str, ServiceCaller] = {}
-        self._properties: PropertyObserver | None = None
+        self._properties: _PropertyObserver | None = None
         self._looks = 0
         self._moving: frozenset[str] = frozenset()
         self._followed, self._followed_s = "", -math.inf
@@ -125,7 +120,7 @@ class WorldClient:
                 name: ServiceCaller(self._node, type_, name, ANSWER_S)
                 for name, type_ in SERVICES.items()
             }
-            self._properties = PropertyObserver(self._node, self._take_properties)
+            self._properties = _PropertyObserver(self._node, self._take_properties)
             self.view, self._looks = WorldView(), 0
         elif not found and self._callers:
             for caller in self._callers.values():
@@ -247,6 +242,63 @@ class WorldClient:
         self._change(world=answer.world.name)
 
 
+def _parameter_of(thing: str, kind: str) -> str:
+    """Return the name of a thing's parameter."""
+    return f"entities.{thing}.{kind}"
+
+
+class _PropertyObserver:
+    """Asks for the gravity, and for mass and friction of a thing.
+
+    Attributes:
+        gravity: in m/s²; None until the simulation says it.
+        properties: of the thing that was asked for last.
+    """
+
+    def __init__(self, node: Node, changed: Callable[[], None]) -> None:
+        """Create the clients; `changed` is called after each answer."""
+        self._changed = changed
+        # One for each question: an answer to several has nothing if one of them is unknown.
+        self._callers = {
+            kind: ServiceCaller(node, GetParameters, GET_PARAMETERS)
+            for kind in (GRAVITY, MASS, FRICTION)
+        }
+        self.gravity: Vector | None = None
+        self.properties = ThingProperties()
+
+    def ask(self, thing: str) -> None:
+        """Ask for the gravity, and for a thing unless its name is empty."""
+        if thing != self.properties.name:
+            self.properties = ThingProperties(thing)
+        self._callers[GRAVITY].ask(GetParameters.Request(names=[GRAVITY]), self._take_gravity)
+        for kind in (MASS, FRICTION) if thing else ():
+            self._callers[kind].ask(
+                GetParameters.Request(names=[_parameter_of(thing, kind)]),
+                lambda answer, kind=kind: self._take(thing, kind, answer),
+            )
+
+    def close(self) -> None:
+        """Destroy the clients."""
+        for caller in self._callers.values():
+            caller.close()
+
+    def _take_gravity(self, answer: GetParameters.Response) -> None:
+        numbers = tuple(value for each in answer.values for value in each.double_array_value)
+        self.gravity = (numbers[0], numbers[1], numbers[2]) if len(numbers) == 3 else None
+        self._changed()
+
+    def _take(self, thing: str, kind: str, answer: GetParameters.Response) -> None:
+        if thing != self.properties.name:
+            return
+        # Empty if there is no such parameter: a thing that is fixed has no mass.
+        value = next((each.double_value for each in answer.values), None)
+        if kind == MASS:
+            self.properties = replace(self.properties, mass_kg=value)
+        else:
+            self.properties = replace(self.properties, friction=value)
+        self._changed()
+
+
 def _wish(request: WorldRequest, report: str = "") -> _WorldChange:
     """Return the change that a request stands for; `report` follows what the user is told."""
     match request:
@@ -279,7 +331,7 @@ def _wish(request: WorldRequest, report: str = "") -> _WorldChange:
             return _setting({GRAVITY: gravity}, f"Gravity is {gravity_words(gravity)}")
         case SetProperties(name, mass_kg, friction):
             wanted = {MASS: mass_kg, FRICTION: friction}
-            values = {parameter_of(name, kind): v for kind, v in wanted.items() if v is not None}
+            values = {_parameter_of(name, kind): v for kind, v in wanted.items() if v is not None}
             return _setting(values, f"{name}: {ThingProperties(name, mass_kg, friction).words()}")
         case _:
             raise TypeError(f"{type(request).__name__} changes nothing by a service")

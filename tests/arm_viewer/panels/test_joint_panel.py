@@ -1,18 +1,28 @@
-"""The ranges of sliders, and when a slider follows its joint."""
+"""The ranges of sliders, when a slider follows its joint, and numbers that are typed beside it."""
 
+import json
 import math
+from collections.abc import Iterator
 
 import pytest
 from robots import joint, link, robot
+from websockets.sync.client import connect
 
 from arm_description.urdf.parser import parse_urdf
+from arm_viewer.access import LOCAL_HOST as HOST
+from arm_viewer.channel import PATH
+from arm_viewer.page_server import PageServer, page_server
 from arm_viewer.panels.joint_panel import (
     MAX_HOLD_S,
     STILL_S,
+    TYPED_NUMBER,
     HeldSlider,
+    JointPanel,
     JointRange,
     joint_ranges,
+    number_typed,
 )
+from arm_viewer.requests import Request
 
 ROBOT = robot(
     *map(link, ("base", "a", "b", "c", "d", "e", "f")),
@@ -121,3 +131,62 @@ def test_a_joint_that_is_there_already_releases_it():
     follower.hold(0.5, 1.0)
     assert follower.shown(0.5, 1.0 + 0.9 * STILL_S) is None
     assert follower.shown(0.5, 1.0 + 1.1 * STILL_S) == 0.5
+
+
+@pytest.mark.parametrize(
+    ("text", "number"), [("-0.5", -0.5), ("1e-2", 0.01), (" 0.12345 ", 0.12345), ("-1", -1.0)]
+)
+def test_a_number_is_what_was_typed(text, number):
+    assert number_typed(text, "j0", -1.0, 1.0) == number
+
+
+def test_a_number_beyond_a_limit_by_rounding_is_the_limit():
+    assert number_typed("-1e-20", "j0", 0.0, 1.0) == 0.0
+    assert number_typed("1.0000000001", "j0", 0.0, 1.0) == 1.0
+
+
+@pytest.mark.parametrize("text", ["", "-", "0,5", "1e", "half"])
+def test_an_invalid_number_is_reported(text):
+    with pytest.raises(ValueError, match="is not a number"):
+        number_typed(text, "j0", -1.0, 1.0)
+
+
+@pytest.mark.parametrize("text", ["1.01", "-inf", "nan"])
+def test_an_unreachable_position_is_reported(text):
+    with pytest.raises(ValueError, match="'j0' goes from -1 to 1"):
+        number_typed(text, "j0", -1.0, 1.0)
+
+
+@pytest.fixture(scope="module")
+def served() -> Iterator[tuple[PageServer, list[Request]]]:
+    """A page with a joint panel without robots, and what it sends."""
+    sent: list[Request] = []
+    with page_server(port=0) as running:
+        JointPanel(running.channel, sent.append).build(running.gui)
+        yield running, sent
+
+
+def test_every_typed_number_is_answered_in_turn(served):
+    server, sent = served
+    with connect(f"ws://{HOST}:{server.get_port()}{PATH}", origin=server.url) as page:
+        for number, text in enumerate(("-0.5", "1e-2")):
+            page.send(
+                json.dumps({"kind": TYPED_NUMBER, "number": number, "slider": "s", "text": text})
+            )
+        answers = [json.loads(page.recv(30.0)) for _ in range(2)]
+    gone = "this joint is no longer there"
+    assert answers == [{"kind": TYPED_NUMBER, "number": n, "problem": gone} for n in (0, 1)]
+    assert not sent
+
+
+@pytest.mark.parametrize(
+    "fields", [{}, {"slider": 1, "text": "1"}, {"slider": "s", "text": "1" * 1000}]
+)
+def test_a_message_that_is_not_a_typed_number_moves_nothing(served, fields):
+    server, sent = served
+    with connect(f"ws://{HOST}:{server.get_port()}{PATH}") as program:
+        program.send(json.dumps({"kind": TYPED_NUMBER, "number": 7, **fields}))
+        answer = json.loads(program.recv(30.0))
+    assert (answer["kind"], answer["of"], answer["number"]) == ("refused", TYPED_NUMBER, 7)
+    assert "is not a text" in answer["problem"]
+    assert not sent
