@@ -15,6 +15,12 @@ ROOT = Path(__file__).parents[2]
 DISTRIBUTIONS = [ROOT / "arm_interfaces", ROOT / "arm_moveit_interfaces"]
 
 
+def output_of(code: str, folder: Path | None = None) -> str:
+    """Return what Python code prints in a process of its own, in a folder."""
+    command = [sys.executable, "-B", "-c", code]
+    return subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True).stdout
+
+
 @pytest.fixture
 def build_module(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Import a module of the build, which is never installed."""
@@ -63,13 +69,7 @@ def test_every_distribution_is_built_by_the_same_code_under_its_own_name(
     distribution: Path,
 ) -> None:
     code = "from interface_build.project import *; print(DEFINITIONS, read_project().name)"
-    found = subprocess.run(
-        [sys.executable, "-B", "-c", code],
-        cwd=distribution,
-        check=True,
-        capture_output=True,
-        text=True,
-    ).stdout
+    found = output_of(code, distribution)
     assert found.split() == [str(distribution / "interfaces"), distribution.name]
     backend = distribution / "interface_build" / "backend.py"
     assert backend.samefile(DISTRIBUTIONS[0] / "interface_build" / "backend.py")
@@ -257,13 +257,7 @@ generator_caches.install()
 assert (expand("ab"), expand("bc"), expand("ab")) == (*plain, plain[0]), plain
 print(plain[1])
 """
-    found = subprocess.run(
-        [sys.executable, "-B", "-c", code],
-        cwd=DISTRIBUTIONS[0],
-        check=True,
-        capture_output=True,
-        text=True,
-    ).stdout
+    found = output_of(code, DISTRIBUTIONS[0])
     assert found == "second\nother\n2\n"
 
 
@@ -274,9 +268,7 @@ def test_messages_of_one_package_load_those_of_the_others() -> None:
         "one = CollisionObject(id='box'); one.type.key = 'crate'; "
         "print(deserialize_message(serialize_message(one), CollisionObject).type.key)"
     )
-    found = subprocess.run(
-        [sys.executable, "-c", code], check=True, capture_output=True, text=True
-    ).stdout
+    found = output_of(code)
     assert found == "crate\n"
 
 
@@ -285,9 +277,7 @@ def test_an_installed_package_imports_only_what_is_used() -> None:
         "import sys; from control_msgs.msg import PidState; import control_msgs.action; "
         "print(*sorted(m for m in sys.modules if m.startswith('control_msgs.')))"
     )
-    found = subprocess.run(
-        [sys.executable, "-c", code], check=True, capture_output=True, text=True
-    ).stdout
+    found = output_of(code)
     assert found.split() == [
         "control_msgs.action",
         "control_msgs.msg",
