@@ -9,7 +9,6 @@ from rclpy.node import Node
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
-from arm_gazebo.errors import RequestError
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.ros.world_markers import watched_publisher
 from arm_gazebo.world.contacts import Contact, Vector, contacts_of
@@ -53,10 +52,7 @@ class ContactMarkerPublisher:
         model = self._editor.model
         if model is not self._model:
             self._model, self._data = model, mujoco.MjData(model)
-        try:
-            self._editor.on_loop(self._copy)
-        except RequestError:
-            return  # A loop that is stuck is reported on /diagnostics.
+        self._editor.on_loop(self._copy)
         message = contact_markers(contacts_of(None, model, self._data, self._editor.entities))
         if message != self._sent:
             self._sent = message

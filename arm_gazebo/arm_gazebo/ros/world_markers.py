@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 from geometry_msgs.msg import Point, Vector3
@@ -13,6 +14,7 @@ from rclpy.publisher import Publisher
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
+from arm_gazebo.errors import RequestError
 from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.entity import WORLD_FRAME
 from arm_gazebo.world.shapes import Solid, WorldShape, WorldShapes
@@ -86,11 +88,17 @@ def watched_publisher(
     Args:
         node: gets the publisher; its executor runs both functions.
         topic: name of the topic.
-        check: called ten times a second of wall time while there are subscribers.
+        check: called ten times a second of wall time while there are subscribers. A RequestError of
+            it is dropped: a loop that is stuck is reported on /diagnostics.
         repeat: called for each new subscriber, before the next check.
     """
+
+    def check_if_answered() -> None:
+        with suppress(RequestError):
+            check()
+
     steady = Clock(clock_type=ClockType.STEADY_TIME)
-    timer = node.create_timer(MARKER_PERIOD_S, check, clock=steady)
+    timer = node.create_timer(MARKER_PERIOD_S, check_if_answered, clock=steady)
     timer.cancel()
 
     def match(matched: QoSPublisherMatchedInfo) -> None:
