@@ -84,6 +84,7 @@ class LinkGeometry:
         self._strict = strict
         self._report = report
         self._reported: set[str] = set()
+        self._listed: set[str] = set()
 
     def add(self, body: mujoco.MjsBody, link: Link) -> None:
         """Add the visuals and collisions of a link to its body.
@@ -229,10 +230,20 @@ class LinkGeometry:
             raise MeshError(f"{_where(link)}: {error}") from error
         if mesh.uri not in self._reported:
             self._reported.add(mesh.uri)
-            message = f"{error}\n  a box of 5 cm replaces it"
+            message = f"{self._once_listed(mesh, error)} a box of 5 cm replaces it"
             self._report.add(Finding(self.missing, element, message, link.line))
         half = PLACEHOLDER_SIDE_M / 2
         return _Shape(mujoco.mjtGeom.mjGEOM_BOX, (half, half, half), rgba=PLACEHOLDER_COLOR)
+
+    def _once_listed(self, mesh: Mesh, error: MeshError) -> str:
+        """Return what is wrong; the places of a package that were searched are listed once."""
+        reason, lists, _ = str(error).partition("; tried:")
+        package = "/".join(mesh.uri.split("/")[:3])
+        if lists and package in self._listed:
+            return f"{reason} in the same folders, either;"
+        if lists:
+            self._listed.add(package)
+        return f"{error}\n "
 
 
 def _where(link: Link) -> str:

@@ -175,6 +175,19 @@ def test_a_missing_mesh_becomes_a_box_and_a_warning_with_the_searched_paths(part
     assert built.model.geom_size[-1] == pytest.approx([0.025] * 3)
 
 
+def test_the_folders_that_lack_a_package_are_listed_once(parts, tmp_path):
+    names = ("package://gone/a.stl", "package://gone/b.stl", "package://other/a.stl", "c.stl")
+    built = parts.build(robot_with(*map(shape, names)), resources=ResourceFinder(None, (tmp_path,)))
+    first, second, third, fourth = [finding.message for finding in built.report.warnings]
+    for each, place in ((first, "gone/a.stl"), (third, "other/a.stl"), (fourth, "c.stl")):
+        assert f"\n  {tmp_path / place}\n" in each
+        assert each.endswith("\n  a box of 5 cm replaces it")
+    said = (
+        "no file for 'package://gone/b.stl' in the same folders, either; a box of 5 cm replaces it"
+    )
+    assert second == said
+
+
 def test_missing_mesh_is_an_error_when_strict(parts):
     with pytest.raises(MeshError, match=r"link 'base' \(line 1\): no file for 'gone.stl'"):
         parts.build(robot_with(shape("gone.stl")), strict=True)
