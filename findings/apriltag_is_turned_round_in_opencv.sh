@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # opencv-python-headless 5.0.0.93, pupil-apriltags 1.0.4.post11: the same tag, half a turn and half a pixel apart.
 #
-# A good guess is that the pose of a printed tag36h11 is the same from both, but for the axis z, which
-# points out of the tag in OpenCV's examples and into it in AprilTag's library, as the axes x, right, y,
-# down, z show: a half turn about x. It is a half turn about y: OpenCV's DICT_APRILTAG_36h11 holds the
+# OpenCV's examples have the axis x of a tag to the right, y up and z out of it, AprilTag's library x to the
+# right, y down and z into it. A good guess is that the two poses of a printed tag36h11 differ by that
+# alone, half a turn about x. It is half a turn about y: OpenCV's DICT_APRILTAG_36h11 holds the
 # codes turned by 180 degrees in the plane of the tag, so that its upper left corner is AprilTag's lower
 # right one. A robot that was calibrated with one and runs with the other grasps from the far side.
 # Corners differ by half a pixel, too: AprilTag counts from the picture's corner, OpenCV, whose
