@@ -7,6 +7,7 @@ from itertools import combinations
 
 from arm_node.names import describe_known, listing
 from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.setting_values import number, switch
 from arm_planning.trajectory import TimedTrajectory
 
 
@@ -57,10 +58,10 @@ def controllers_of_settings(settings: Mapping[str, object]) -> list[TrajectoryCo
         settings: the values below moveit_simple_controller_manager, with dotted names.
 
     Raises:
-        PlanningError: a controller has no joints or an unknown type.
+        PlanningError: a controller has no joints or an unknown type, or a value cannot be used.
     """
     names = settings.get("controller_names", ())
-    if not isinstance(names, Sequence):
+    if isinstance(names, str) or not isinstance(names, Sequence):
         raise _refusal("moveit_simple_controller_manager.controller_names is not a list of names")
     return [_controller(str(name), settings) for name in names]
 
@@ -143,25 +144,22 @@ def _controller(name: str, settings: Mapping[str, object]) -> TrajectoryControll
     joints = own.get("joints", ())
     if not isinstance(joints, Sequence) or isinstance(joints, str) or not joints:
         raise _refusal(f"controller '{name}' of moveit_simple_controller_manager has no joints")
+    full = f"moveit_simple_controller_manager.{prefix}"
     return TrajectoryController(
         name,
         str(own.get("action_ns", "")),
         kind,
         tuple(map(str, joints)),
-        is_default=own.get("default") is True,
-        max_effort=_number(own.get("max_effort"), 0.0),
-        stall_is_success=own.get("allow_failure") is True,
-        duration_scaling=_optional(own.get("allowed_execution_duration_scaling")),
-        duration_margin_s=_optional(own.get("allowed_goal_duration_margin")),
+        is_default=switch(f"{full}default", own.get("default", False)),
+        max_effort=number(f"{full}max_effort", own.get("max_effort", 0.0)),
+        stall_is_success=switch(f"{full}allow_failure", own.get("allow_failure", False)),
+        duration_scaling=_optional(full, own, "allowed_execution_duration_scaling"),
+        duration_margin_s=_optional(full, own, "allowed_goal_duration_margin"),
     )
 
 
-def _number(value: object, default: float) -> float:
-    return float(value) if isinstance(value, int | float) else default
-
-
-def _optional(value: object) -> float | None:
-    return float(value) if isinstance(value, int | float) else None
+def _optional(prefix: str, own: Mapping[str, object], key: str) -> float | None:
+    return number(prefix + key, own[key], least=0.0) if key in own else None
 
 
 def _refusal(sentence: str) -> PlanningError:

@@ -4,6 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from arm_planning.execution.controllers import TrajectoryController
+from arm_planning.setting_values import number, switch
+
+EXECUTION = "trajectory_execution"
+"""What the names of these parameters begin with."""
+MONITORING = "execution_duration_monitoring"
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,14 +30,21 @@ class ExecutionSettings:
 
     @classmethod
     def read(cls, values: Mapping[str, object]) -> "ExecutionSettings":
-        """Return the settings of parameters named as in MoveIt; missing ones have defaults."""
+        """Return the settings of parameters named as in MoveIt; missing ones have defaults.
+
+        Raises:
+            SettingError: a value has the wrong type or sign.
+        """
         default = cls()
-        monitors = values.get("execution_duration_monitoring", True)
+
+        def least_0(name: str, otherwise: float) -> float:
+            return number(f"{EXECUTION}.{name}", values.get(name, otherwise), least=0.0)
+
         return cls(
-            _number(values, "allowed_execution_duration_scaling", default.duration_scaling),
-            _number(values, "allowed_goal_duration_margin", default.duration_margin_s),
-            _number(values, "allowed_start_tolerance", default.start_tolerance),
-            monitors is not False,
+            least_0("allowed_execution_duration_scaling", default.duration_scaling),
+            least_0("allowed_goal_duration_margin", default.duration_margin_s),
+            least_0("allowed_start_tolerance", default.start_tolerance),
+            switch(f"{EXECUTION}.{MONITORING}", values.get(MONITORING, default.monitors_duration)),
         )
 
     def longest_s(self, duration_s: float, controller: TrajectoryController) -> float:
@@ -40,10 +52,3 @@ class ExecutionSettings:
         scaling, margin_s = controller.duration_scaling, controller.duration_margin_s
         scaling = self.duration_scaling if scaling is None else scaling
         return duration_s * scaling + (self.duration_margin_s if margin_s is None else margin_s)
-
-
-def _number(values: Mapping[str, object], name: str, default: float) -> float:
-    value = values.get(name, default)
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        return float(value)
-    return default

@@ -1,13 +1,12 @@
 """The settings of inverse kinematics in a kinematics.yaml."""
 
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from arm_node.names import describe_known
-from arm_planning.errors import SettingError
 from arm_planning.kinematics.search import Orientation
 from arm_planning.robot.model import PlanningModel
+from arm_planning.setting_values import number, switch
 
 TIMEOUT, POSITION_ONLY = "kinematics_solver_timeout", "position_only_ik"
 
@@ -52,27 +51,13 @@ def kinematics_settings(
             warn(f"robot_description_kinematics names the group '{group}'; {known}")
     return {
         group: KinematicsSettings(
-            _seconds(values, f"{group}.{TIMEOUT}"), _switch(values, f"{group}.{POSITION_ONLY}")
+            number(*_given(values, f"{group}.{TIMEOUT}", 0.0), least=0.0),
+            switch(*_given(values, f"{group}.{POSITION_ONLY}", default=False)),
         )
         for group in groups
         if group in model.groups
     }
 
 
-def _seconds(values: Mapping[str, object], name: str) -> float:
-    value = values.get(name, 0.0)
-    # YAML's integers have no bounds.
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, int | float)
-        or not 0.0 <= value <= sys.float_info.max
-    ):
-        raise SettingError(f"robot_description_kinematics.{name} is {value!r}; it is a time in s")
-    return float(value)
-
-
-def _switch(values: Mapping[str, object], name: str) -> bool:
-    value = values.get(name, False)
-    if not isinstance(value, bool):
-        raise SettingError(f"robot_description_kinematics.{name} is {value!r}; it is true or false")
-    return value
+def _given(values: Mapping[str, object], name: str, default: object) -> tuple[str, object]:
+    return f"robot_description_kinematics.{name}", values.get(name, default)

@@ -1,7 +1,6 @@
 """The limits of joints: those of the URDF, replaced one by one by those of joint_limits.yaml."""
 
 import math
-import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 
@@ -11,6 +10,7 @@ from arm_node.names import describe_known, listing
 from arm_node.parameter_file import flat_parameters
 from arm_planning.errors import PlanningError, SettingError
 from arm_planning.robot.model import PlanningLimits
+from arm_planning.setting_values import number, switch
 
 RAMP_S = 0.5
 """Time to full speed, for joints without an acceleration limit: a URDF cannot give one."""
@@ -99,7 +99,7 @@ def joint_limit_settings(values: Mapping[str, object], warn: Warn) -> JointLimit
                 warn(f"{name} is passed over: {describe_known(key, kinds, 'the keys are')}")
         for kind in scaling:
             if name == f"default_{kind}_scaling_factor":
-                scaling[kind] = _fraction(name, value)
+                scaling[kind] = number(name, value, above=0.0, most=1.0)
     given = {joint: GivenLimits(**keys) for joint, keys in joints.items()}  # pyright: ignore[reportArgumentType]
     return JointLimitSettings(given, scaling["velocity"], scaling["acceleration"])
 
@@ -183,29 +183,9 @@ def _kind(key: str) -> str:
 
 def _value(name: str, value: object, kind: str) -> bool | float:
     if kind == "bool":
-        if not isinstance(value, bool):
-            raise SettingError(f"{name} is {value!r}; it is true or false")
-        return value
-    number = _number(name, value)
-    if kind == "maximum":
-        # Decelerations are negative in Pilz' files.
-        number = abs(number) if name.endswith("max_deceleration") else number
-        if number <= 0.0:
-            raise SettingError(f"{name} is {value!r}; a limit is above 0")
-    return number
-
-
-def _fraction(name: str, value: object) -> float:
-    number = _number(name, value)
-    if not 0.0 < number <= 1.0:
-        raise SettingError(f"{name} is {value!r}; it is above 0 and at most 1")
-    return number
-
-
-def _number(name: str, value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise SettingError(f"{name} is {value!r}, which is not a finite number")
-    # YAML's integers have no bounds, and `isfinite` raises an error above a float's.
-    if not abs(value) <= sys.float_info.max:
-        raise SettingError(f"{name} is {value!r}, which is not a finite number")
-    return float(value)
+        return switch(name, value)
+    if kind == "number":
+        return number(name, value)
+    # Decelerations are negative in Pilz' files.
+    limit = abs(number(name, value)) if name.endswith("max_deceleration") else value
+    return number(name, limit, above=0.0)

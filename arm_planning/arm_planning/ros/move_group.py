@@ -15,7 +15,7 @@ from arm_node.qos import LATCHED
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import MoveItErrorCode
 from arm_planning.execution.controllers import controllers_of_settings
-from arm_planning.execution.settings import ExecutionSettings
+from arm_planning.execution.settings import EXECUTION, ExecutionSettings
 from arm_planning.ros.answering import BusyLimit, offer_service
 from arm_planning.ros.controller_list import ControllerList
 from arm_planning.ros.convert import error_code
@@ -30,7 +30,7 @@ from arm_planning.ros.planner_parameters import PlannerParameterServices
 from arm_planning.ros.planning_services import PlanningServices
 from arm_planning.ros.planning_session import PlanningSession
 from arm_planning.ros.quick_services import QuickExecutor, QuickServices, SlowExecutor
-from arm_planning.ros.robot_setup import PlanningSetup, values_below
+from arm_planning.ros.robot_setup import PlanningSetup, switch_of, values_below
 from arm_planning.ros.scene_monitor import SceneMonitor
 from arm_planning.ros.sequence_server import SequenceServer
 from arm_planning.ros.state_services import StateServices
@@ -56,14 +56,13 @@ class MoveGroup:
         if setup.in_world is not None:
             self.monitor.follow_world(scene_node, setup.in_world)
         session = PlanningSession(setup, self.monitor)
-        settings = ExecutionSettings.read(values_below(node, "trajectory_execution"))
+        settings = ExecutionSettings.read(values_below(node, EXECUTION))
         controllers = ControllerList(
             node, controllers_of_settings(values_below(node, "moveit_simple_controller_manager"))
         )
         executor = ExecutionManager(node, self.monitor.states, controllers.available, settings)
         display = PlanDisplay(node, setup.model)
-        allows = node.get_parameter_or("allow_trajectory_execution", None)
-        allows_execution = allows is None or allows.value is not False
+        allows_execution = switch_of(node, "allow_trajectory_execution", default=True)
         motions = MotionGoals(
             session, executor, display, allows_execution, moving=Turns(), planning=Turns(PLANS)
         )

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any
 
 from arm_node.names import describe_known
 from arm_planning.errors import SettingError
+from arm_planning.setting_values import number
 
 PLUGIN = "occupancy_map_monitor/PointCloudOctomapUpdater"
 RESOLUTION_M = 0.1
@@ -66,7 +66,7 @@ def octomap_settings(given: Mapping[str, Any]) -> OctomapSettings | None:
     sensors = tuple(_sensor(given, name) for name in names if name)
     if not sensors:
         return None
-    resolution_m = _number(given, "octomap_resolution", RESOLUTION_M, above=0.0)
+    resolution_m = _positive(given, "octomap_resolution", RESOLUTION_M)
     return OctomapSettings(str(given.get("octomap_frame", "")), resolution_m, sensors)
 
 
@@ -81,23 +81,16 @@ def _sensor(given: Mapping[str, Any], name: str) -> OctomapSensor:
     subsample = given.get(f"{name}.point_subsample", 1)
     if not isinstance(subsample, int) or subsample < 1:
         raise SettingError(f"{name}.point_subsample is {subsample}; it is a whole number from 1")
-    padding_m = _number(given, f"{name}.padding_offset", 0.0, above=-1e-9)
     return OctomapSensor(
         name,
         topic,
-        _number(given, f"{name}.max_range", 5.0, above=0.0),
+        _positive(given, f"{name}.max_range", 5.0),
         subsample,
-        padding_m,
-        _number(given, f"{name}.padding_scale", 1.0, above=0.0),
-        _number(given, f"{name}.max_update_rate", 1.0, above=0.0),
+        number(f"{name}.padding_offset", given.get(f"{name}.padding_offset", 0.0), least=0.0),
+        _positive(given, f"{name}.padding_scale", 1.0),
+        _positive(given, f"{name}.max_update_rate", 1.0),
     )
 
 
-def _number(given: Mapping[str, Any], name: str, default: float, above: float) -> float:
-    value = given.get(name, default)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise SettingError(f"{name} is {value!r}; it is a number")
-    if not (isfinite(value) and value > above):
-        bound = "above 0" if above == 0.0 else "not negative"
-        raise SettingError(f"{name} is {value}; it is finite and {bound}")
-    return float(value)
+def _positive(given: Mapping[str, Any], name: str, default: float) -> float:
+    return number(name, given.get(name, default), above=0.0)

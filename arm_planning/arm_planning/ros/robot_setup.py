@@ -2,7 +2,7 @@
 
 import logging
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ from arm_planning.robot.srdf import parse_srdf
 from arm_planning.robot.srdf_writer import srdf_text
 from arm_planning.scene.allowed_collisions import allowed_collisions
 from arm_planning.scene.scene import PlanningScene
+from arm_planning.setting_values import number, switch
 from arm_planning.srdf_maker import make_srdf
 
 URDF, SRDF = "robot_description", "robot_description_semantic"
@@ -124,13 +125,24 @@ def _text(node: Node, name: str) -> str:
     return value
 
 
+def switch_of(node: Node, name: str, *, default: bool) -> bool:
+    """Return a parameter that is true or false, or the default if it is not set.
+
+    Raises:
+        SettingError: it is neither.
+    """
+    value = node.get_parameter(name).value if node.has_parameter(name) else None
+    return default if value is None else switch(name, value)
+
+
 def _in_world(node: Node) -> RigidTransform | None:
-    if not (node.has_parameter(FOLLOW) and node.get_parameter(FOLLOW).value is True):
+    if not switch_of(node, FOLLOW, default=False):
         return None
-    given: Any = node.get_parameter(POSE).value if node.has_parameter(POSE) else ()
-    if len(given or ()) not in (0, 6):
-        raise SettingError(f"{POSE} has {len(given)} numbers; it is x y z roll pitch yaw")
-    x, y, z, *rpy = given or (0.0,) * 6
+    given: Any = node.get_parameter(POSE).value if node.has_parameter(POSE) else None
+    given = (0.0,) * 6 if given is None or given == [] else given
+    if isinstance(given, str) or not isinstance(given, Sequence) or len(given) != 6:
+        raise SettingError(f"{POSE} is {given!r}; it is six numbers, x y z roll pitch yaw")
+    x, y, z, *rpy = (number(POSE, each) for each in given)
     turned = quaternion_from_rpy(rpy).tolist()
     return RigidTransform((x, y, z), (turned[0], turned[1], turned[2], turned[3]))
 

@@ -102,7 +102,7 @@ def test_an_unknown_key_is_a_warning():
         ("max_velocity: fast", "max_velocity is 'fast', which is not a finite number"),
         ("max_velocity: .nan", "max_velocity is nan, which is not a finite number"),
         (f"max_position: {HUGE}", f"max_position is {HUGE}, which is not a finite number"),
-        ("max_acceleration: 0", "max_acceleration is 0; a limit is above 0"),
+        ("max_acceleration: 0", "max_acceleration is 0; it is above 0"),
         ("has_jerk_limits: 1", "has_jerk_limits is 1; it is true or false"),
     ],
 )

@@ -45,12 +45,12 @@ def test_a_configuration_without_sensors_makes_no_octomap(tmp_path):
         ("eye.sensor_plugin", "DepthImageOctomapUpdater", "PointCloudOctomapUpdater"),
         ("eye.point_cloud_topic", "", "it is a topic's name"),
         ("eye.point_subsample", 0, "a whole number from 1"),
-        ("eye.max_range", 0.0, "finite and above 0"),
-        ("eye.max_range", float("inf"), "finite and above 0"),
-        ("eye.max_update_rate", "fast", "it is a number"),
-        ("eye.padding_offset", -0.1, "not negative"),
+        ("eye.max_range", 0.0, "it is above 0"),
+        ("eye.max_range", float("inf"), "not a finite number"),
+        ("eye.max_update_rate", "fast", "not a finite number"),
+        ("eye.padding_offset", -0.1, "at least 0"),
         ("eye.padding_scale", 0.0, "above 0"),
-        ("octomap_resolution", float("nan"), "finite and above 0"),
+        ("octomap_resolution", float("nan"), "not a finite number"),
     ],
 )
 def test_a_value_that_cannot_be_used_is_told_why(name, value, says):

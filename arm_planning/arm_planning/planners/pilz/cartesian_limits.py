@@ -1,12 +1,12 @@
 """The limits of the tip's motion: those of pilz_cartesian_limits.yaml."""
 
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 from arm_node.names import describe_known
 from arm_node.parameter_file import flat_parameters
 from arm_planning.errors import SettingError
+from arm_planning.setting_values import number
 
 _PREFIX = "cartesian_limits."
 
@@ -50,12 +50,8 @@ def cartesian_limits(values: Mapping[str, object]) -> CartesianLimits:
         key = name.removeprefix(_PREFIX)
         if key not in known:
             raise SettingError(f"no limit '{name}'; {describe_known(key, known, 'there are')}")
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise SettingError(f"{name} is not a number: {value!r}")
-        is_negative = key == "max_trans_dec"
-        # YAML's integers have no bounds.
-        if not 0.0 < (-value if is_negative else value) <= sys.float_info.max:
-            kind = "negative" if is_negative else "positive"
-            raise SettingError(f"{name} is {value!r}; it must be {kind} and finite")
-        given[key] = float(value)
+        if key == "max_trans_dec":
+            given[key] = number(name, value, below=0.0)
+        else:
+            given[key] = number(name, value, above=0.0)
     return CartesianLimits(**given)

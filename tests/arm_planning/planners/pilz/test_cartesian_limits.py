@@ -17,12 +17,12 @@ def test_other_parameters_are_passed_over():
 @pytest.mark.parametrize(
     ("key", "value", "sentence"),
     [
-        ("max_trans_vel", 0.0, "must be positive"),
-        ("max_trans_vel", 10**400, "must be positive and finite"),
-        ("max_trans_dec", 5.0, "must be negative"),
-        ("max_rot_vel", float("nan"), "must be positive"),
-        ("max_rot_vel", "fast", "is not a number: 'fast'"),
-        ("max_trans_acc", True, "is not a number: True"),
+        ("max_trans_vel", 0.0, "is 0.0; it is above 0"),
+        ("max_trans_vel", 10**400, "not a finite number"),
+        ("max_trans_dec", 5.0, "is 5.0; it is below 0"),
+        ("max_rot_vel", float("nan"), "not a finite number"),
+        ("max_rot_vel", "fast", "is 'fast', which is not a finite number"),
+        ("max_trans_acc", True, "is True, which is not a finite number"),
         ("max_trans_speed", 1.0, "no limit 'cartesian_limits.max_trans_speed'"),
     ],
 )
