@@ -93,7 +93,8 @@ class Project:
             if not (self.is_looked_at(place.parts[0]) or self.is_looked_at(place.name)):
                 continue
             files = [path] if path.is_file() else [p for p in path.rglob("*") if p.is_file()]
-            found += [str(place / file.relative_to(path)) for file in files]
+            kept = [file for file in files if "__pycache__" not in file.parts]
+            found += [str(place / file.relative_to(path)) for file in kept]
         return sorted(found)
 
 
@@ -158,10 +159,12 @@ def make_environment(folder: Path) -> Path:
 def bare() -> dict[str, str]:
     """Return this process's environment without what leads to packages or constrains pip.
 
-    What the ROS wheels' bootstrap has set stays: they need it in every process.
+    What the ROS wheels' bootstrap has set stays: they need it in every process. pip compiles
+    nothing, because little of what it installs is imported.
     """
     left_out = ("AMENT_PREFIX_PATH", "PYTHONPATH", "PIP_CONSTRAINT")
-    return {name: value for name, value in os.environ.items() if name not in left_out}
+    kept = {name: value for name, value in os.environ.items() if name not in left_out}
+    return {**kept, "PIP_COMPILE": "0"}
 
 
 def environment_of(prefixes: str, **variables: str) -> dict[str, str]:
