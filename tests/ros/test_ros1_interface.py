@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from programs import Program
+from programs import RosProgram
 
 pytestmark = pytest.mark.ros
 
@@ -50,7 +50,7 @@ def test_four_topics_move_the_arm_and_states_come_at_50_hz_beside_the_camera(lau
 
 def list_controllers() -> tuple[int, list[str]]:
     """Return the exit code of the verb, and the lines that it prints."""
-    verb = Program([sys.executable, "-m", "arm_cli", "control", "list_controllers"])
+    verb = RosProgram([sys.executable, "-m", "arm_cli", "control", "list_controllers"])
     code = verb.wait()
     verb.close()
     return code, verb.own_words

@@ -6,7 +6,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from programs import Program
+from programs import RosProgram
 from robots import box, joint, link, robot
 
 pytestmark = pytest.mark.ros
@@ -33,7 +33,7 @@ def test_arm_move_plans_and_moves_it(launch, client, urdf):
     launch(str(urdf), "planning:=true").wait_until_ready()
     states = client.subscribe(JointState, "/joint_states")
     words = [sys.executable, "-m", "arm_cli", "move", "--joints", "j1=0.4", "j2=-0.3"]
-    with closing(Program(words)) as program:
+    with closing(RosProgram(words)) as program:
         assert "moved group 'arm'" in program.succeed()
     wanted = {"j1": 0.4, "j2": -0.3, "j3": 0.0}
 
@@ -53,9 +53,9 @@ def test_arm_move_finds_the_robot_in_its_namespace_and_ends_with_its_move_group(
     launched.wait_until_ready()
     states = client.subscribe(JointState, "/left/joint_states")
     words = [sys.executable, "-m", "arm_cli", "move", "--joints", "j1=1.0", "--speed", "0.02"]
-    with closing(Program(words)) as program:
+    with closing(RosProgram(words)) as program:
         assert program.fail().endswith("there is a robot with planning in -n /left")
-    with closing(Program([*words, "-n", "left"])) as program:
+    with closing(RosProgram([*words, "-n", "left"])) as program:
         states.wait_until(lambda heard: heard and max(heard[-1].velocity) > 0.01, "a motion")
         (move_group,) = launched.processes("'move_group'")
         move_group.send_signal(signal.SIGKILL)
@@ -66,5 +66,6 @@ def test_arm_move_says_that_a_robot_without_joints_has_nothing_to_move(launch, t
     file = tmp_path / "block.urdf"
     file.write_text(robot(link("block", box("visual", "collision"))))
     launch(str(file), "planning:=true").wait_until_ready()
-    with closing(Program([sys.executable, "-m", "arm_cli", "move", "--state", "home"])) as program:
+    words = [sys.executable, "-m", "arm_cli", "move", "--state", "home"]
+    with closing(RosProgram(words)) as program:
         assert "arm move: the robot has no group to move" in program.fail()

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from programs import Program
+from programs import Program, RosProgram
 from rosbags.highlevel import AnyReader
 
 from arm_sim.bench.mycobot_arm import EmulatedMyCobot
@@ -49,7 +49,7 @@ def test_a_planned_motion_moves_the_arm_and_is_recorded(
 ):
     bag = tmp_path / "bag"
     words = ("bag", "record", "/joint_states", "-o", str(bag))
-    recorder = Program([sys.executable, "-m", "arm_cli", *words], os.environ)
+    recorder = RosProgram([sys.executable, "-m", "arm_cli", *words], os.environ)
     try:
         recorder.wait_for_line("All requested topics are subscribed")
         before = planning.positions()["link1_to_link2"]

@@ -5,7 +5,7 @@ from contextlib import closing
 from typing import Any
 
 import pytest
-from programs import Program
+from programs import RosProgram
 
 pytestmark = pytest.mark.ros
 
@@ -62,7 +62,7 @@ class Run:
 
 
 def arm(*words: str) -> str:
-    with closing(Program([sys.executable, "-m", "arm_cli", *words])) as program:
+    with closing(RosProgram([sys.executable, "-m", "arm_cli", *words])) as program:
         return program.succeed()
 
 

@@ -7,7 +7,7 @@ from contextlib import closing
 from typing import Any
 
 import pytest
-from programs import Program
+from programs import RosProgram
 
 pytestmark = pytest.mark.ros
 
@@ -223,7 +223,7 @@ def test_a_part_of_a_controllers_joints_is_refused_and_named(planning, at_the_st
 
 
 def arm_move(*words: str) -> Any:
-    return closing(Program([sys.executable, "-m", "arm_cli", "move", *words], os.environ))
+    return closing(RosProgram([sys.executable, "-m", "arm_cli", "move", *words], os.environ))
 
 
 def test_arm_move_moves_the_arm_to_a_named_state(planning, launched, at_the_start):

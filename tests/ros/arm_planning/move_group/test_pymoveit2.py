@@ -5,14 +5,14 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from programs import Program
+from programs import RosProgram
 
 pytestmark = pytest.mark.ros
 
 
 def test_a_program_of_pymoveit2_works_as_it_is(planning):
     script = Path(__file__).with_name("pymoveit2_client.py")
-    with closing(Program([sys.executable, str(script)])) as program:
+    with closing(RosProgram([sys.executable, str(script)])) as program:
         words = dict(line.split(maxsplit=1) for line in program.succeed().splitlines() if line)
     assert words["groups"] == "['arm', 'arm_with_gripper', 'gripper']"
     moved = ("named", "joints", "inverse", "pose", "cartesian")
