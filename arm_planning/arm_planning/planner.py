@@ -93,6 +93,7 @@ class Planner:
         scene: PlanningScene | None = None,
         *,
         resources: ResourceFinder | None = None,
+        meshes: MeshPieces | None = None,
         tip_limits: CartesianLimits | None = None,
         kinematics: Mapping[str, KinematicsSettings] | None = None,
     ) -> None:
@@ -102,6 +103,7 @@ class Planner:
             model: the robot with its groups.
             scene: its surroundings; by default none, all joints at 0 or their nearest limit.
             resources: finds the robot's meshes.
+            meshes: cuts meshes, instead of `resources`: planners that share it cut each once.
             tip_limits: speeds of a group's tip for Pilz' planners.
             kinematics: settings of groups for `inverse` and `cartesian_path`.
         """
@@ -109,7 +111,7 @@ class Planner:
         self._tip_limits = tip_limits
         self._settings = dict(kinematics or {})
         self.scene = scene or PlanningScene(resting_positions(model))
-        self._meshes = MeshPieces(resources)
+        self._meshes = meshes or MeshPieces(resources)
         self._checkers: dict[str, tuple[PlanningScene, SceneChecker]] = {}
         self._inverse: dict[str, tuple[JointPositions, GroupKinematics]] = {}
 
@@ -135,15 +137,13 @@ class Planner:
             SrdfError: the SRDF cannot be used.
         """
         robot = parse_urdf(urdf)
-        finder = resources or ResourceFinder.of_description(urdf)
+        meshes = MeshPieces(resources or ResourceFinder.of_description(urdf))
         semantic = (
-            parse_srdf(srdf, robot)
-            if srdf
-            else make_srdf(robot, LOGGER.warning, meshes=MeshPieces(finder))
+            parse_srdf(srdf, robot) if srdf else make_srdf(robot, LOGGER.warning, meshes=meshes)
         )
         model = planning_model(robot, semantic, limits)
         scene = PlanningScene(resting_positions(model), allowed=allowed_collisions(semantic))
-        return cls(model, scene, resources=finder)
+        return cls(model, scene, meshes=meshes)
 
     def plan(
         self,

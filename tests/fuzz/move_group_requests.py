@@ -15,10 +15,10 @@ import numpy as np
 from moveit_msgs.msg import MotionPlanRequest, MotionSequenceRequest, RobotTrajectory
 from moveit_msgs.msg import PlanningScene as SceneMessage
 
-from arm_description.resources import ResourceFinder
 from arm_node.messages import MessageValueError
 from arm_node.messages.filling import fill_message
 from arm_planning import Planner
+from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
 from arm_planning.request import PlanRequest
 from arm_planning.ros.answering import BusyLimit
@@ -26,6 +26,7 @@ from arm_planning.ros.convert_scene import scene_change_of
 from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planning_services import PlanningServices
 from arm_planning.ros.planning_session import PlanningSession
+from arm_planning.ros.quick_services import QuickServices
 from arm_planning.ros.robot_setup import PlanningSetup
 from arm_planning.ros.sequence_server import SequenceSession
 from arm_planning.ros.state_services import StateServices
@@ -352,13 +353,13 @@ class Desk:
     def __init__(self) -> None:
         planner = Planner.of_urdf(URDF, SRDF)
         setup = PlanningSetup(
-            planner.model, planner.scene, "", ResourceFinder(), CartesianLimits(), 0, in_world=None
+            planner.model, planner.scene, "", MeshPieces(), CartesianLimits(), 0, in_world=None
         )
         self._session: Any = _Session(setup, _Monitor(planner))  # pyright: ignore[reportArgumentType]
         self._node: Any = _Node()
         display = PlanDisplay(self._node, planner.model)
         PlanningServices(self._node, self._session, display, BusyLimit(1))
-        StateServices(self._node, self._session, BusyLimit(1))
+        StateServices(self._node, self._session, BusyLimit(1), QuickServices())
         self._scene = planner.scene
 
     def answer(self, kind: str, data: bytes) -> bool:

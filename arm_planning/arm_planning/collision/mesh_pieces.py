@@ -7,6 +7,7 @@
 """
 
 import hashlib
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar, cast
@@ -25,6 +26,7 @@ from arm_planning.scene.shapes import TriangleMesh
 Array = NDArray[np.float64]
 ThingT = TypeVar("ThingT")
 PartT = TypeVar("PartT")
+KeyT = TypeVar("KeyT")
 Pieces = tuple[Array, ...]
 """The corners of each convex piece, shapes (n, 3), m."""
 
@@ -37,6 +39,12 @@ CONVEX_WITHIN = 1e-6
 """How far a corner may stand out of a face of a convex part, in parts of the part's size."""
 FLAT = 1e-6
 """Ratio of thickness to size below which a part is flat."""
+SHARP = 1e-6
+"""Determinant of the normals around a corner, of trace 1, above which it is one for certain: so it
+is where faces are tilted by some 2 degrees."""
+NEAR = 1e-3
+"""Part of a mesh's distance from its frame that its size must have for single precision, which
+MuJoCo has, to tell its corners from each other."""
 SAME_PLACE = 1e-9
 """Distance below which corners are one corner, in parts of the mesh's size."""
 PRODUCTS_AT_ONCE = 4_000_000
@@ -52,7 +60,7 @@ class MeshPieces:
     """Cuts meshes into convex pieces, and remembers them, and the shapes of links and objects.
 
     Keep one for all the models of a robot: reading and cutting a mesh takes much longer than the
-    rest of a model.
+    rest of a model. Any thread may use it; two at a time may cut the same mesh twice.
 
     Args:
         resources: finds the mesh files of links.
@@ -62,6 +70,7 @@ class MeshPieces:
         self._resources = resources or ResourceFinder()
         self._known: dict[object, Pieces] = {}
         self._of: dict[int, tuple[object, tuple[object, ...]]] = {}
+        self._lock = threading.Lock()
 
     def of_file(self, mesh: Mesh) -> Pieces:
         """Return the hulls of the parts of a link's mesh file, scaled.
@@ -83,20 +92,21 @@ class MeshPieces:
 
     def of(self, thing: ThingT, make: Callable[[ThingT], tuple[PartT, ...]]) -> tuple[PartT, ...]:
         """Return what was made of an unchanging thing, made now if this is the first time."""
-        if id(thing) not in self._of:
-            made = make(thing)
-            if len(self._of) >= MAX_REMEMBERED:
-                self._of.pop(next(iter(self._of)))
+        known = self._of.get(id(thing))
+        if known is None:
             # The thing is kept, so that no other gets its id.
-            self._of[id(thing)] = (thing, made)
-        return cast(tuple[PartT, ...], self._of[id(thing)][1])
+            known = (thing, make(thing))
+            with self._lock:
+                _remember(self._of, id(thing), known)
+        return cast(tuple[PartT, ...], known[1])
 
     def _remembered(self, key: object, make: Callable[[], Pieces]) -> Pieces:
-        if key not in self._known:
-            if len(self._known) >= MAX_REMEMBERED:
-                self._known.pop(next(iter(self._known)))
-            self._known[key] = make()
-        return self._known[key]
+        known = self._known.get(key)
+        if known is None:
+            known = make()
+            with self._lock:
+                _remember(self._known, key, known)
+        return known
 
     def _read(self, mesh: Mesh) -> Pieces:
         try:
@@ -112,6 +122,12 @@ class MeshPieces:
             if len(part.vertices)
             for piece in link_pieces(part.vertices * np.asarray(mesh.scale), part.faces)
         )
+
+
+def _remember(known: dict[KeyT, ThingT], key: KeyT, thing: ThingT) -> None:
+    if len(known) >= MAX_REMEMBERED:
+        known.pop(next(iter(known)))
+    known[key] = thing
 
 
 def link_pieces(vertices: Array, triangles: NDArray[np.int32]) -> Pieces:
@@ -161,9 +177,10 @@ def convex_pieces(mesh: TriangleMesh) -> Pieces:
     plates: list[Array] = []
     for part in _parts(triangles, len(corners)):
         used, local = np.unique(part, return_inverse=True)
-        points = corners[used]
-        if _is_closed(part) and _is_convex(points, local.reshape(-1, 3)):
-            pieces.append(hull(points))
+        points, faces = corners[used], local.reshape(-1, 3)
+        if _is_closed(part) and _is_convex(points, *(found := _normals(points, faces))):
+            # MuJoCo's hull takes most of the time; it leaves out what lies between corners.
+            pieces.append(points if _are_corners(points, *found) else hull(points))
         else:
             plates.extend(thickened(corner) for corner in corners[part])
     if len(plates) > MAX_PLATES:
@@ -308,15 +325,10 @@ def _is_closed(triangles: NDArray[np.int64]) -> bool:
     return bool((counts == 2).all())
 
 
-def _is_convex(points: Array, triangles: NDArray[np.int64]) -> bool:
+def _is_convex(points: Array, normals: Array, triangles: NDArray[np.int64]) -> bool:
     """Return whether all points lie on one side of each triangle."""
-    a, b, c = (points[corner] for corner in triangles.T)
-    normals = np.cross(b - a, c - a)
-    lengths = np.linalg.norm(normals, axis=1)
     size = float(np.ptp(points, axis=0).max())
-    # A sliver has no direction to judge by; its neighbours are judged.
-    solid = lengths > FLAT * size * size * FLAT
-    normals, a = normals[solid] / lengths[solid, None], a[solid]
+    a = points[triangles[:, 0]]
     rows = max(1, PRODUCTS_AT_ONCE // len(points))
     for start in range(0, len(normals), rows):
         normal = normals[start : start + rows]
@@ -325,6 +337,32 @@ def _is_convex(points: Array, triangles: NDArray[np.int64]) -> bool:
         if (np.minimum(out, inward) > CONVEX_WITHIN * size).any():
             return False
     return True
+
+
+def _normals(points: Array, triangles: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
+    """Return unit normals, (k, 3), and their triangles.
+
+    A sliver has no direction to judge by; its neighbours are judged.
+    """
+    a, b, c = (points[corner] for corner in triangles.T)
+    normals = np.cross(b - a, c - a)
+    lengths = np.linalg.norm(normals, axis=1)
+    size = float(np.ptp(points, axis=0).max())
+    solid = lengths > FLAT * size * size * FLAT
+    return normals[solid] / lengths[solid, None], triangles[solid]
+
+
+def _are_corners(points: Array, normals: Array, triangles: NDArray[np.int64]) -> bool:
+    """Return whether each point of a convex surface is a corner of it for certain."""
+    if float(np.ptp(points, axis=0).max()) < NEAR * float(np.abs(points).max()):
+        return False
+    around = np.zeros((len(points), 3, 3))
+    products = normals[:, :, None] * normals[:, None, :]
+    for corner in triangles.T:
+        np.add.at(around, corner, products)
+    # The trace is the number of triangles.
+    count = np.trace(around, axis1=1, axis2=2)
+    return bool((np.linalg.det(around) > SHARP * count**3).all())
 
 
 def _broken(reason: str) -> PlanningError:

@@ -12,7 +12,6 @@ from std_srvs.srv import Empty
 
 from arm_node.executor_thread import ExecutorThread
 from arm_node.qos import LATCHED
-from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import MoveItErrorCode
 from arm_planning.execution.controllers import controllers_of_settings
 from arm_planning.execution.settings import EXECUTION, ExecutionSettings
@@ -52,7 +51,7 @@ class MoveGroup:
     def __init__(self, node: Node, scene_node: Node, setup: PlanningSetup) -> None:
         self._model = setup.model
         self._node = node
-        self.monitor = SceneMonitor(scene_node, setup.model, setup.scene, node)
+        self.monitor = SceneMonitor(scene_node, setup.model, setup.scene, setup.meshes, node)
         if setup.in_world is not None:
             self.monitor.follow_world(scene_node, setup.in_world)
         session = PlanningSession(setup, self.monitor)
@@ -83,11 +82,10 @@ class MoveGroup:
         scene_node.create_subscription(String, "trajectory_execution_event", self._take_event, 10)
         offer_service(node, GetGroupUrdf, "get_urdf", self._urdf)
         octomap = octomap_settings(values_below(node, ""))
-        meshes = MeshPieces(setup.resources)
         self._octomap = (
             None
             if octomap is None
-            else OctomapUpdater(node, self.monitor, setup.model, meshes, octomap)
+            else OctomapUpdater(node, self.monitor, setup.model, setup.meshes, octomap)
         )
         offer_service(node, Empty, "clear_octomap", self._clear_octomap)
 

@@ -57,7 +57,7 @@ class PlanningSession:
             planner = Planner(
                 self.model,
                 self.monitor.scene,
-                resources=self._setup.resources,
+                meshes=self._setup.meshes,
                 tip_limits=self._setup.tip_limits,
                 kinematics=self._setup.kinematics,
             )

@@ -47,7 +47,7 @@ class PlanningSetup:
         model: the robot with its groups.
         scene: the scene at the start: without objects.
         srdf: text of the SRDF.
-        resources: finds the robot's meshes.
+        meshes: cuts the meshes of the robot and of all scenes.
         tip_limits: speeds of a group's tip for Pilz' planners.
         seed: seed of all requests.
         in_world: pose of the robot's root in the simulated world whose things are objects of the
@@ -58,7 +58,7 @@ class PlanningSetup:
     model: PlanningModel
     scene: PlanningScene
     srdf: str
-    resources: ResourceFinder
+    meshes: MeshPieces
     tip_limits: CartesianLimits
     seed: int
     in_world: RigidTransform | None
@@ -88,12 +88,12 @@ def read_setup(node: Node) -> PlanningSetup:
     """
     urdf = _text(node, URDF) or _from_topic(node, URDF)
     paths = [Path(part) for part in _text(node, "package_path").split(":") if part]
-    resources = ResourceFinder.of_description(urdf, paths)
+    meshes = MeshPieces(ResourceFinder.of_description(urdf, paths))
     robot = parse_urdf(urdf)
     srdf = _text(node, SRDF)
     if not srdf:
         LOGGER.info("no robot_description_semantic is given: groups are made from the URDF")
-        srdf = srdf_text(make_srdf(robot, LOGGER.warning, meshes=MeshPieces(resources)))
+        srdf = srdf_text(make_srdf(robot, LOGGER.warning, meshes=meshes))
     semantic = parse_srdf(srdf, robot)
     given = values_below(node, PLANNING)
     limits = joint_limit_settings(given, LOGGER.warning)
@@ -104,7 +104,7 @@ def read_setup(node: Node) -> PlanningSetup:
         model,
         scene,
         srdf,
-        resources,
+        meshes,
         cartesian_limits(given),
         _seed(node),
         _in_world(node),

@@ -16,6 +16,7 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 
 from arm_node.rigid_transform import RigidTransform
+from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.model import CollisionModel
 from arm_planning.errors import PlanningError
 from arm_planning.robot.model import PlanningModel
@@ -52,7 +53,12 @@ class SceneMonitor:
     """
 
     def __init__(
-        self, node: Node, model: PlanningModel, scene: PlanningScene, *others: Node
+        self,
+        node: Node,
+        model: PlanningModel,
+        scene: PlanningScene,
+        meshes: MeshPieces,
+        *others: Node,
     ) -> None:
         """Listen to the scene's topics, and offer its services.
 
@@ -60,9 +66,10 @@ class SceneMonitor:
             node: has the topics and services.
             model: the robot.
             scene: the scene at the start.
+            meshes: cuts the meshes of changes.
             others: nodes that take the robot's time, too.
         """
-        self._model = model
+        self._model, self._meshes = model, meshes
         self._scene = scene
         # Reading the scene takes in what has moved in the world, also within a change.
         self._lock = threading.RLock()
@@ -152,7 +159,9 @@ class SceneMonitor:
             except PlanningError as error:
                 LOGGER.error("%s", error)
                 return str(error)
-            self._scene, unusable = without_unusable(self._model, before, outcome.scene)
+            self._scene, unusable = without_unusable(
+                self._model, before, outcome.scene, self._meshes
+            )
         problems = (*outcome.problems, *unusable)
         for problem in problems:
             LOGGER.error("%s", problem)
@@ -166,7 +175,7 @@ class SceneMonitor:
         """
         with self._lock:
             before = self.current()
-            scene, unusable = without_unusable(self._model, before, change(before))
+            scene, unusable = without_unusable(self._model, before, change(before), self._meshes)
             if unusable:
                 raise unusable[0]
             self._scene = scene
@@ -234,7 +243,7 @@ def _has_moved(before: PlanningScene, after: PlanningScene) -> bool:
 
 
 def without_unusable(
-    model: PlanningModel, before: PlanningScene, after: PlanningScene
+    model: PlanningModel, before: PlanningScene, after: PlanningScene, meshes: MeshPieces
 ) -> tuple[PlanningScene, list[PlanningError]]:
     """Return a changed scene in which objects with unusable meshes are as before, and the reasons.
 
@@ -244,14 +253,15 @@ def without_unusable(
         model: the robot.
         before: the scene before the change, whose meshes are usable.
         after: the scene after it.
+        meshes: cuts meshes.
     """
     known = {id(mesh) for thing in _things(before) for mesh in _meshes(thing)}
     new = [
         thing for thing in _things(after) if any(id(mesh) not in known for mesh in _meshes(thing))
     ]
-    if not new or _why_unusable(model, after, new) is None:
+    if not new or _why_unusable(model, after, new, meshes) is None:
         return after, []
-    problems = {thing.id: _why_unusable(model, after, [thing]) for thing in new}
+    problems = {thing.id: _why_unusable(model, after, [thing], meshes) for thing in new}
     unusable = {name: problem for name, problem in problems.items() if problem is not None}
     kept = replace(
         after,
@@ -271,11 +281,14 @@ def _meshes(thing: CollisionObject) -> list[TriangleMesh]:
 
 
 def _why_unusable(
-    model: PlanningModel, scene: PlanningScene, things: Iterable[CollisionObject]
+    model: PlanningModel,
+    scene: PlanningScene,
+    things: Iterable[CollisionObject],
+    meshes: MeshPieces,
 ) -> PlanningError | None:
     alone = PlanningScene(scene.positions, objects={thing.id: thing for thing in things})
     try:
-        CollisionModel(model, alone)
+        CollisionModel(model, alone, meshes=meshes)
     except PlanningError as error:
         return error
     return None

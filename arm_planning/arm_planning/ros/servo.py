@@ -16,7 +16,6 @@ from rclpy.node import Node
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool
 
-from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import PlanningError
 from arm_planning.robot.model import JointPositions
 from arm_planning.ros.answering import offer_service
@@ -70,7 +69,7 @@ class JogServer:
 
     def __init__(self, node: Node, setup: PlanningSetup, settings: ServoSettings) -> None:
         self._node, self._settings = node, settings
-        self._jog = Jog(setup.model, settings, MeshPieces(setup.resources))
+        self._jog = Jog(setup.model, settings, setup.meshes)
         self._states = JointStateMonitor(node, setup.model)
         self._scene = ServoScene(node, setup.model, setup.scene)
         joints = self._jog.group.joints

@@ -1,3 +1,5 @@
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -75,6 +77,31 @@ def test_a_file_of_separate_triangles_is_joined():
     soup = TriangleMesh(CORNERS[FACES].reshape(-1, 3), np.arange(36).reshape(-1, 3))
     (piece,) = convex_pieces(soup)
     assert len(piece) == 8
+
+
+def test_points_between_the_corners_of_a_convex_mesh_are_left_out():
+    lid = np.array([[4, 6, 8], [6, 7, 8], [7, 5, 8], [5, 4, 8]])
+    corners = np.concatenate([CORNERS, [[1.0, 0.5, 0.5]]])
+    (piece,) = convex_pieces(TriangleMesh(corners, np.concatenate([FACES[:2], lid, FACES[4:]])))
+    assert sorted(map(tuple, np.round(piece, 6))) == sorted(map(tuple, CORNERS))
+
+
+def test_a_convex_mesh_of_corners_alone_is_its_own_hull():
+    raised = np.concatenate([CORNERS, [[1.5, 0.5, 0.5]]])
+    lid = np.array([[4, 6, 8], [6, 7, 8], [7, 5, 8], [5, 4, 8]])
+    mesh = TriangleMesh(raised, np.concatenate([FACES[:2], lid, FACES[4:]]))
+    (piece,) = convex_pieces(mesh)
+    assert sorted(map(tuple, piece)) == sorted(map(tuple, raised))
+    assert sorted(map(tuple, np.round(hull(raised), 6))) == sorted(map(tuple, raised))
+
+
+def test_meshes_are_cut_by_several_threads():
+    meshes, sizes = MeshPieces(), np.linspace(1.0, 2.0, 40)
+    stones = [TriangleMesh(size * CORNERS, FACES) for size in sizes]
+    with ThreadPoolExecutor(4) as threads:
+        cut = list(threads.map(meshes.of_object, stones * 4))
+    largest = [float(piece.max()) for (piece,) in cut]
+    assert largest == pytest.approx([*sizes] * 4)
 
 
 def test_a_notched_body_is_plates():

@@ -6,10 +6,10 @@ import pytest
 from moveit_msgs.msg import Constraints, JointConstraint, MotionPlanRequest
 from planar_robot import planar_model
 
-from arm_description.resources import ResourceFinder
 from arm_description.urdf.robot import Box
 from arm_node.rigid_transform import RigidTransform
 from arm_planning import CollisionObject, PlacedShape, PlanningScene
+from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
 from arm_planning.ros.planning_session import PlanningSession
 from arm_planning.ros.robot_setup import PlanningSetup
@@ -48,7 +48,7 @@ def monitor() -> Monitor:
 @pytest.fixture
 def session(monitor: Monitor) -> PlanningSession:
     setup = PlanningSetup(
-        planar_model(), EMPTY, "", ResourceFinder(), CartesianLimits(), 0, in_world=None
+        planar_model(), EMPTY, "", MeshPieces(), CartesianLimits(), 0, in_world=None
     )
     return PlanningSession(setup, monitor)
 

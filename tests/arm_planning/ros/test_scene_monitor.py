@@ -7,6 +7,7 @@ import pytest
 from planar_robot import planar_model
 
 from arm_node.rigid_transform import RigidTransform
+from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.ros.scene_monitor import without_unusable
 from arm_planning.scene.objects import AttachedBody, CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
@@ -34,26 +35,26 @@ def before() -> PlanningScene:
 
 
 def test_meshes_that_can_be_used_stay(before: PlanningScene):
-    assert without_unusable(MODEL, EMPTY, before) == (before, [])
+    assert without_unusable(MODEL, EMPTY, before, MeshPieces()) == (before, [])
 
 
 def test_of_a_change_only_what_cannot_be_used_is_left_out(before: PlanningScene):
     other = thing("other", CORNERS * 2.0)
     after = replace(before, objects={"good": GOOD, "bad": BAD, "other": other})
-    kept, (problem,) = without_unusable(MODEL, before, after)
+    kept, (problem,) = without_unusable(MODEL, before, after, MeshPieces())
     assert list(kept.objects) == ["good", "other"]
     assert "bad" in str(problem)
 
 
 def test_an_object_whose_new_mesh_cannot_be_used_keeps_the_one_it_had(before: PlanningScene):
     after = replace(before, objects={"good": replace(BAD, id="good")})
-    kept, problems = without_unusable(MODEL, before, after)
+    kept, problems = without_unusable(MODEL, before, after, MeshPieces())
     assert kept.objects == {"good": GOOD}
     assert len(problems) == 1
 
 
 def test_an_attached_mesh_that_cannot_be_used_is_left_out(before: PlanningScene):
     after = replace(before, attached={"bad": AttachedBody(BAD, "tip")})
-    kept, problems = without_unusable(MODEL, before, after)
+    kept, problems = without_unusable(MODEL, before, after, MeshPieces())
     assert not kept.attached
     assert len(problems) == 1
