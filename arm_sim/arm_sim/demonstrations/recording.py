@@ -152,13 +152,16 @@ def _result(made: Awaited) -> Demonstration:
 
 @contextmanager
 def worker_processes(number: int) -> Iterator[Making]:
-    """Give what starts demonstrations in processes, which end with the context."""
+    """Give what starts demonstrations in processes, which end with the context, at once."""
     # Spawned: a forked process would share what OpenGL and threads have begun.
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(number, context, initializer=_begin, initargs=(os.getpid(),))
     try:
         yield lambda seed: pool.submit(make_demonstration, seed)
     finally:
+        # What they still make is not wanted. From Python 3.14 on this is `terminate_workers`.
+        for worker in list(pool._processes.values()):  # pyright: ignore[reportPrivateUsage]
+            worker.terminate()
         pool.shutdown(cancel_futures=True)
 
 
