@@ -67,11 +67,13 @@ def signal_at_each_line(event: StopEvent) -> Iterator[int]:
                     signal.raise_signal(signal.SIGUSR1)
             return trace
 
+        # A debugger's, or that of a measurement of coverage.
+        usual = sys.gettrace()
         sys.settrace(trace)
         try:
             event.wait(0.0)
         finally:
-            sys.settrace(None)
+            sys.settrace(usual)
         yield line_of_signal
         if lines < line_of_signal:
             return
