@@ -17,7 +17,12 @@ REQUIREMENTS = [
     "xacro>=2.1",
 ]
 DATA_FOLDERS = ["urdf", "meshes", "config", "launch"]
-DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
+DATA_FILES = [
+    path
+    for folder in DATA_FOLDERS
+    for path in Path(folder).rglob("*")
+    if path.is_file() and path.suffix != ".pyc"
+]
 
 setup(
     name=PACKAGE,

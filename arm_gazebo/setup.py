@@ -20,7 +20,12 @@ REQUIREMENTS = [
     "zstandard>=0.22",
 ]
 DATA_FOLDERS = ["urdf", "worlds", "config", "launch"]
-DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
+DATA_FILES = [
+    path
+    for folder in DATA_FOLDERS
+    for path in Path(folder).rglob("*")
+    if path.is_file() and path.suffix != ".pyc"
+]
 
 setup(
     name=PACKAGE,

@@ -24,7 +24,12 @@ REQUIREMENTS = [
 ]
 FRONT = ["*.js", "*.css", "*.html", "*.svg"]
 DATA_FOLDERS = ["launch"]
-DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
+DATA_FILES = [
+    path
+    for folder in DATA_FOLDERS
+    for path in Path(folder).rglob("*")
+    if path.is_file() and path.suffix != ".pyc"
+]
 
 setup(
     name=PACKAGE,

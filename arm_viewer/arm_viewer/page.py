@@ -12,6 +12,7 @@ from contextlib import contextmanager
 
 from viser import GuiApi, GuiTabHandle
 
+from arm_viewer.channel import Channel
 from arm_viewer.page_look import LEFT_PANEL_WIDTH_PX, apply_look
 from arm_viewer.page_server import PageServer
 from arm_viewer.panels.calls import Calls
@@ -119,15 +120,9 @@ async def _build(
     left.dock_left()
     left.set_width(LEFT_PANEL_WIDTH_PX)
     pictures = PicturePanel(server.channel)
+    pictures.build(gui)
     cameras = {"Cameras": (CameraPanel(send, is_watched, left, pictures.wanted),)}
-    channelled = (
-        ViewFromCamera(server.channel, frames),
-        PlotFeed(server.channel, send),
-        Observations(server.channel, send),
-        Calls(server.channel, send),
-    )
-    for panel in (pictures, *channelled):
-        panel.build(gui)
+    channelled = _build_without_tab(server.channel, frames, send, gui)
     tabs = gui.add_tab_group()
     planning = PlanningPanel(server.scene, frames, send, tabs.add_tab)
     planning.build(gui)
@@ -141,6 +136,21 @@ async def _build(
         *channelled,
         planning,
     )
+
+
+def _build_without_tab(
+    channel: Channel, frames: Frames, send: Send, gui: GuiApi
+) -> tuple[Panel, ...]:
+    """Build what lies over the scene or has its own HTML."""
+    panels = (
+        ViewFromCamera(channel, frames),
+        PlotFeed(channel, send),
+        Observations(channel, send),
+        Calls(channel, send),
+    )
+    for panel in panels:
+        panel.build(gui)
+    return panels
 
 
 def _build_tabs(

@@ -7,7 +7,12 @@ from setuptools import setup
 PACKAGE = "mycobot_bringup"
 NEIGHBOURS = ["../../arm_cli", "../mycobot_gazebo"]
 DATA_FOLDERS = ["scripts"]
-DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
+DATA_FILES = [
+    path
+    for folder in DATA_FOLDERS
+    for path in Path(folder).rglob("*")
+    if path.is_file() and path.suffix != ".pyc"
+]
 
 setup(
     name=PACKAGE,

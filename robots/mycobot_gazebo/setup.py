@@ -14,7 +14,12 @@ NEIGHBOURS = [
     "../mycobot_moveit_config",
 ]
 DATA_FOLDERS = ["launch"]
-DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
+DATA_FILES = [
+    path
+    for folder in DATA_FOLDERS
+    for path in Path(folder).rglob("*")
+    if path.is_file() and path.suffix != ".pyc"
+]
 
 setup(
     name=PACKAGE,

@@ -7,7 +7,12 @@ from setuptools import setup
 PACKAGE = "ros_gz_sim_demos"
 NEIGHBOURS = ["../../arm_gazebo", "../../launch_py"]
 DATA_FOLDERS = ["launch", "urdf"]
-DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
+DATA_FILES = [
+    path
+    for folder in DATA_FOLDERS
+    for path in Path(folder).rglob("*")
+    if path.is_file() and path.suffix != ".pyc"
+]
 
 setup(
     name=PACKAGE,

@@ -7,7 +7,12 @@ from setuptools import setup
 PACKAGE = "urdf_tutorial"
 NEIGHBOURS = ["../../arm_description", "../../launch_py"]
 DATA_FOLDERS = ["launch"]
-DATA_FILES = [path for folder in DATA_FOLDERS for path in Path(folder).rglob("*") if path.is_file()]
+DATA_FILES = [
+    path
+    for folder in DATA_FOLDERS
+    for path in Path(folder).rglob("*")
+    if path.is_file() and path.suffix != ".pyc"
+]
 
 setup(
     name=PACKAGE,

@@ -125,12 +125,10 @@ class RunCheck:
             self._folder.cleanup()
             raise PageRecordingError(f"cannot start {words[0]}: {error.strerror}") from error
         self._said: list[str] = []
-        self._threads = [
-            threading.Thread(target=run, name="run check", daemon=True)
-            for run in (self._follow, self._listen)
-        ]
-        for thread in self._threads:
-            thread.start()
+        self._listener = threading.Thread(target=self._listen, name="run check", daemon=True)
+        self._listener.start()
+        # The last to start, because it waits for the other at the end of the process.
+        threading.Thread(target=self._follow, name="run check", daemon=True).start()
 
     def close(self) -> str:
         """End the process, and remove its bag; say what was not compared, if anything was not."""
@@ -170,7 +168,7 @@ class RunCheck:
                 if self.part is not shown and self._is_wanted:
                     self._changed(self)
         code = self._process.wait()
-        self._threads[1].join()
+        self._listener.join()
         if not self._is_wanted:
             return
         self.part = replace(self.part, grows=False)

@@ -88,6 +88,20 @@ def test_a_run_without_a_period_is_not_called_verified(checked):
     assert not check.verdict.is_equal
 
 
+def test_a_process_may_end_before_all_threads_that_read_it_have_started(checked, monkeypatch):
+    started = []
+
+    def start(thread, usual=threading.Thread.start):
+        usual(thread)
+        started.append(thread)
+        if len(started) == 1:
+            thread.join(TIMEOUT_S)
+
+    monkeypatch.setattr(threading.Thread, "start", start)
+    check, _ = checked(SCRIPT, lines({"result": EQUAL}))
+    assert check.verdict.is_equal
+
+
 def test_equal_periods_are_counted(checked):
     check, (part,) = checked(SCRIPT, lines({"periods": 50, **LENGTHS}, {"result": EQUAL}))
     assert (check.verdict.is_over, check.verdict.is_equal) == (True, True)
