@@ -131,7 +131,7 @@ EVERY_LAYER = 1
 """The collision mask of all of a robot's shapes while they are checked against each other."""
 
 Depths = dict[tuple[int, int], float]
-"""Deepest overlap in m of two bodies: the robot's first, or of two such the smaller number."""
+"""The deepest overlap of two bodies, in m. The robot's comes first; of two, the lower number."""
 
 
 def report_overlaps(

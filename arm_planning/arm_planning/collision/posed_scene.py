@@ -16,7 +16,7 @@ from arm_planning.errors import MoveItErrorCode, PlanningError
 Array = NDArray[np.float64]
 
 ORDER = {BodyKind.ROBOT_LINK: 0, BodyKind.ROBOT_ATTACHED: 1, BodyKind.WORLD_OBJECT: 2}
-OTHER_SEARCH = int(mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
+WITH_LIBCCD = int(mujoco.mjtDisableBit.mjDSBL_NATIVECCD)
 """Makes MuJoCo look for contacts with libccd. Its depths are rougher, so that a state of meshes in
 contact takes three quarters of the time; one of 200 000 states was free that touches by 0.5 um."""
 
@@ -97,7 +97,7 @@ class PosedScene:
         place, look, usual = mujoco.mj_kinematics, mujoco.mj_collision, option.disableflags
         if clearance_m:
             self.set_margins(clearance_m)
-        option.disableflags = usual | OTHER_SEARCH
+        option.disableflags = usual | WITH_LIBCCD
         free = len(positions)
         for number, row in enumerate(positions):
             qpos[:] = row

@@ -12,7 +12,7 @@ SENSOR = CameraSensor("c", "l", "f", width=320, height=240, hfov=1.047)
 def test_the_camera_matrix_of_the_arms_camera():
     k = np.reshape(info_message(SENSOR).k, (3, 3))
     expected = [[277.191, 0, 160], [0, 277.191, 120], [0, 0, 1]]
-    np.testing.assert_allclose(k, expected, atol=1e-3)
+    assert k == pytest.approx(np.array(expected), abs=1e-3)
 
 
 def test_a_point_at_the_edge_of_the_field_of_view_is_at_the_edge_of_the_picture():

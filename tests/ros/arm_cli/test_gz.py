@@ -46,8 +46,10 @@ def test_topics_are_listed_with_the_world_s_and_the_camera_s(gz):
         "/world/objects/pose/info",
         "/world/objects/stats",
     }
-    gz("topic", "-l", until=lambda text: topics <= set(text.splitlines()))
-    gz("topic", "-i", "--topic", "/videocamera", until=lambda text: "gz.msgs.Image" in text)
+    listed = gz("topic", "-l", until=lambda text: topics <= set(text.splitlines()))
+    assert topics <= set(listed.splitlines())
+    shown = gz("topic", "-i", "--topic", "/videocamera", until=lambda text: "gz.msgs.Image" in text)
+    assert "gz.msgs.Image" in shown
 
 
 def test_messages_come_in_protobuf_s_form(gz):
