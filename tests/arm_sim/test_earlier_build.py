@@ -7,12 +7,15 @@ snapshot at 0.4 s, in the middle of a trajectory, a grip and the fall of a box.
 import re
 from pathlib import Path
 
+import mujoco
 import pytest
 
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
 from arm_sim import Simulation
 
+# Recordings and snapshots belong to their version of MuJoCo: others are refused, with a sentence.
+pytestmark = pytest.mark.skipif(mujoco.__version__ != "4.0.0", reason="made with MuJoCo 4.0.0")
 FILES = Path(__file__).with_name("earlier_build")
 AT_END = (-0.00152515, 0.21778761, 0.19834749, 0.38504419, 0.23503576)
 """The joints' positions after 0.8 s (rad)."""
