@@ -132,6 +132,8 @@ def lengths(count: int, runs: int, limit_s: float, only: str) -> harness.Row:
             best = shortest(given, model, start, goal, runs, limit_s)
             if path is not None and np.isfinite(best):
                 ratios.append(path_length(path) / best)
+                # Hours may pass until the last: what is known so far is not lost with the rest.
+                print(f"{given.arm.name}, {given.kind}, {seed}: {ratios[-1]:.3f} x", flush=True)
     p50, p90 = harness.percentiles(ratios, 50, 90) if ratios else (np.nan, np.nan)
     return harness.Row(
         f"{only or 'all'}: length against the shortest of {runs} runs of RRT* of {limit_s:g} s, "
