@@ -6,9 +6,9 @@ fast.
 
 import signal
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, cast
 
 from arm_cli.errors import ArmCliError
 from arm_cli.output import complain, say_document
@@ -18,29 +18,6 @@ if TYPE_CHECKING:
     from arm_cli.arguments import CommandParser, Declaration, VerbFunction
 
 EXIT_USAGE = 2
-
-
-class Runnable(Protocol):
-    """An entry in the table of verbs: a verb or a family of verbs."""
-
-    @property
-    def name(self) -> str:
-        """The word on the command line."""
-        ...
-
-    @property
-    def help(self) -> str:
-        """One line of help."""
-        ...
-
-    def run(self, program: str, words: Sequence[str]) -> int:
-        """Run it; return the exit code.
-
-        Args:
-            program: the words before `words`, such as "arm topic echo".
-            words: the words after its name.
-        """
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,15 +82,20 @@ class PlainVerb:
         return run_reporting_errors(program, lambda: run(words))
 
 
-@dataclass(frozen=True, slots=True)
 class VerbFamily:
-    """Verbs that share a first word."""
+    """Verbs that share a first word.
 
-    name: str
-    help: str
-    verbs: tuple[Runnable, ...]
-    missing: Mapping[str, str] = field(default_factory=dict[str, str])
-    """Verbs of ros2 that do not exist here, each with a sentence that says why."""
+    Attributes:
+        name: the word on the command line.
+        help: one line of help.
+        verbs: the verbs, and families of verbs.
+        missing: verbs of ros2 that do not exist here, each with a sentence that says why.
+    """
+
+    def __init__(
+        self, name: str, help: str, *verbs: "Runnable", missing: Mapping[str, str] | None = None
+    ) -> None:
+        self.name, self.help, self.verbs, self.missing = name, help, verbs, missing or {}
 
     def run(self, program: str, words: Sequence[str]) -> int:
         """Run the verb that the first word names; return the exit code."""
@@ -150,6 +132,10 @@ class VerbFamily:
         what = "option" if word.startswith("-") else "verb"
         known = [verb.name for verb in self.verbs] if what == "verb" else ["--help", "--version"]
         return f"no {what} {word!r}; {describe_known(word, known)}"
+
+
+Runnable = Verb | PlainVerb | VerbFamily
+"""An entry in the table of verbs."""
 
 
 def run_reporting_errors(program: str, action: Callable[[], int | None]) -> int:

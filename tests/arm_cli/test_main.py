@@ -11,7 +11,7 @@ import pytest
 
 from arm_cli.main import main
 from arm_cli.verb import run_reporting_errors
-from arm_cli.verbs import VERBS
+from arm_cli.verbs import ARM
 
 PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
 
@@ -21,7 +21,7 @@ def test_help_lists_the_verbs(capsys, words):
     assert main(words) == 0
     text = capsys.readouterr().out
     lines = [line.split(maxsplit=1) for line in text.splitlines()]
-    for verb in VERBS:
+    for verb in ARM.verbs:
         assert [verb.name, verb.help] in lines
 
 

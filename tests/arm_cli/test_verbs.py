@@ -7,10 +7,10 @@ import pytest
 
 from arm_cli.main import main
 from arm_cli.verb import Verb, VerbFamily
-from arm_cli.verbs import VERBS
+from arm_cli.verbs import ARM
 
 
-def leaves(verbs=VERBS, program="arm"):
+def leaves(verbs=ARM.verbs, program="arm"):
     for verb in verbs:
         name = f"{program} {verb.name}"
         if isinstance(verb, VerbFamily):
