@@ -2,7 +2,8 @@
 
 A workaround that does not improve a figure that users notice by a tenth has no place in the suite.
 Of local_profile and private_files, what they prevent is counted. Nothing here provokes the faults
-of the libraries that torn_ports, lost_ports and parameter_types answer.
+of the libraries that torn_ports, lost_ports and parameter_types answer, and patch_releases takes
+a file of another MuJoCo.
 """
 
 import argparse

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
 from arm_gazebo.robot.actuation import RobotJoint
+from arm_node.workarounds.patch_releases import for_version, saved_version, version_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +46,8 @@ class SavedModel:
     """A model that can be written to a file; all attributes except `content` are `BuiltModel`'s.
 
     Attributes:
-        content: the model as MuJoCo saves it; another version of MuJoCo may not read it.
+        content: the model as MuJoCo saves it; other versions of MuJoCo than its own patch
+            releases may not read it.
     """
 
     content: bytes
@@ -75,11 +77,13 @@ class SavedModel:
         """
         name = "saved.mjb"
         try:
-            model = mujoco.MjModel.from_binary_path(name, {name: self.content})
+            content = for_version(self.content, mujoco.mj_version())
+            model = mujoco.MjModel.from_binary_path(name, {name: content})
         except (ValueError, mujoco.FatalError) as error:
-            reason = " ".join(str(error).split())
+            theirs, reason = saved_version(self.content), " ".join(str(error).split())
+            by = "" if theirs is None else f" that MuJoCo {version_text(theirs)} saved"
             raise ModelError(
-                f"MuJoCo {mujoco.__version__} cannot read the model: {reason}"
+                f"MuJoCo {mujoco.__version__} cannot read the model{by}: {reason}"
             ) from error
         qpos = self.qpos.copy()
         qpos.setflags(write=False)

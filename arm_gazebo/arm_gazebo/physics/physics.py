@@ -213,7 +213,11 @@ class Physics:
         }
 
     def load_state(self, state: dict[str, Any]) -> None:
-        """Restore a saved state of the same model; call it between two `advance` calls."""
+        """Restore a saved state of the same model; call it between two `advance` calls.
+
+        Raises:
+            StateError: it is that of another model.
+        """
         # States of older versions have the world's own properties.
         self._change_properties(state.get("properties", UNCHANGED))
         self._gate.load_state(state["gate"])

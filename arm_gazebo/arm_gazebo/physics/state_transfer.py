@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_control.errors import StateError
 from arm_gazebo.physics.state_probe import EVERYTHING
 
 DRIVE_ARRAYS = (
@@ -287,7 +288,18 @@ class PhysicsState:
         }
 
     def load(self, state: dict[str, Any]) -> None:
-        """Restore saved arrays of the same model."""
+        """Restore saved arrays of the same model.
+
+        Raises:
+            StateError: they are those of another model or of another MuJoCo; nothing has changed.
+        """
+        for owner, saved in ((self._model, state["model"]), (self._data, state["arrays"])):
+            for name, values in saved.items():
+                if getattr(getattr(owner, name, None), "shape", None) != values.shape:
+                    raise StateError(
+                        f"the state's array {name} does not fit this model in MuJoCo "
+                        f"{mujoco.__version__}"
+                    )
         for name, values in state["model"].items():
             getattr(self._model, name)[...] = values
         self._load_data(state)

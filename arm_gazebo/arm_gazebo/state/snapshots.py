@@ -123,13 +123,18 @@ def _content_of(path: Path) -> Any:
     except (zstandard.ZstdError, StateError, KeyError, TypeError) as error:
         raise _damaged(path, error) from error
     theirs = made_with.get("mujoco", "")
-    if theirs != mujoco.__version__:
+    if _release(theirs) != _release(mujoco.__version__):
         raise RequestError(
             Refusal.UNREADABLE,
             f"{path} was made with MuJoCo {theirs}, and this is {mujoco.__version__}: its state "
             "does not fit",
         )
     return content
+
+
+def _release(version: str) -> str:
+    """Return a version without its last number: patch releases of MuJoCo have the same arrays."""
+    return version.rpartition(".")[0]
 
 
 def _damaged(path: Path, error: Exception) -> RequestError:
@@ -277,11 +282,17 @@ class SnapshotStore:
     def _check(self, where: str, snapshot: RunSnapshot) -> None:
         """Check that a snapshot fits, before anything changes."""
         if self._hash_of(snapshot.changes) != snapshot.model:
+            theirs = snapshot.made_with.get("mujoco")
+            versions = (
+                ""
+                if theirs == mujoco.__version__
+                else f"; MuJoCo {theirs} may also have built it otherwise than {mujoco.__version__}"
+            )
             raise RequestError(
                 Refusal.FAILED,
                 f"the model of the snapshot '{where}' is not that of this simulation: it was made "
                 f"in the world {snapshot.world}, and this is {self._world()}; its robots, their "
-                "arguments and the files of spawned models must be the same as well",
+                "arguments and the files of spawned models must be the same as well" + versions,
             )
         try:
             self._editor.on_loop(lambda: self._state.check(snapshot.state))

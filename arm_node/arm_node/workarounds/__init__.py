@@ -24,6 +24,7 @@ stamp_clock and process_clock in `clocks`, and the others in modules of their na
 | parameter_types      | an unknown parameter type gets no answer    | rclpy            |          |
 | lazy_messages        | one message imports all of its package      | rclpy            |          |
 | profiler             | MuJoCo reads the clock 20 times in a step   | MuJoCo           |          |
+| patch_releases       | MuJoCo refuses models saved by 4.0.x        | MuJoCo           |          |
 | parse_cache          | every generator parses every definition     | rosidl           |          |
 | template_cache       | EmPy scans every template for every file    | EmPy             |          |
 
@@ -34,8 +35,8 @@ MuJoCo 4.0 and EmPy 4. `serialized_goals` is beside its controller, in
 its `interface_build`.
 
 All but `deadlocked_end`, which was found on Kilted, are made for Jazzy, and all are on with both,
-as measured there: the fault exists, or a figure gets better by a tenth.
-`benchmarks/RESULTS.md` has the figures of both.
+as measured there: the fault exists, or a figure gets better by a tenth. The two of MuJoCo do not
+depend on ROS. `benchmarks/RESULTS.md` has the figures.
 
 [6535]: https://github.com/eProsima/Fast-DDS/issues/6535
 [6502]: https://github.com/eProsima/Fast-DDS/issues/6502

@@ -94,6 +94,7 @@ LIBRARIES: Mapping[str, Library] = {
     "lazy_messages": RCLPY,
     "serialized_goals": RCLPY,
     "profiler": MUJOCO,
+    "patch_releases": MUJOCO,
 }
 """The library of each workaround, by the workaround's name."""
 

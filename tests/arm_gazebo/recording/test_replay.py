@@ -1,7 +1,9 @@
 import functools
 import math
+import struct
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 import pytest
 from robots import crate
@@ -9,7 +11,7 @@ from robots import crate
 from arm_control.controllers.joint_trajectory.goals import GoalRequest
 from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
 from arm_control.errors import ControllerManagerError
-from arm_gazebo.errors import RecordingError
+from arm_gazebo.errors import ModelError, RecordingError
 from arm_gazebo.recording.replay import Replay, differing
 from arm_gazebo.recording.run_file import RecordedInput, RunFile, RunFileWriter
 
@@ -42,6 +44,40 @@ def rewritten(path, change):
         writer.write(change(record) if isinstance(record, RecordedInput) else record)
     writer.close()
     return new
+
+
+def saved_by(path, version: int):
+    """Write a copy of a recording whose model another version of MuJoCo saved; return its path."""
+    file, new = RunFile(path), path.with_suffix(".other")
+    header = {key: value for key, value in file.header.items() if key != "format"}
+    model = header["run"].model
+    content = bytearray(model.content)
+    struct.pack_into("=i", content, 12, version)
+    header["run"] = replace(header["run"], model=replace(model, content=bytes(content)))
+    writer = RunFileWriter(new, header)
+    for record in file.records():
+        writer.write(record)
+    writer.close()
+    return new
+
+
+@pytest.mark.workaround("patch_releases")
+def test_a_recording_of_another_patch_release_of_mujoco_repeats(recorded, parts):
+    run = recorded(parts.pendulum())
+    run.run(3)
+    other = saved_by(run.finish(), mujoco.mj_version() + 1)
+    assert Replay(RunFile(other)).run().difference is None
+
+
+def test_a_recording_of_another_release_of_mujoco_is_refused_with_both_versions(recorded, parts):
+    run = recorded(parts.pendulum())
+    run.run(3)
+    other = saved_by(run.finish(), 4_099_000)
+    here = mujoco.__version__
+    with pytest.raises(
+        ModelError, match=f"MuJoCo {here} cannot read the model that MuJoCo 4.99.0 saved"
+    ):
+        Replay(RunFile(other))
 
 
 def test_a_run_of_commands_repeats_to_the_last_bit(recorded, replayed, parts):

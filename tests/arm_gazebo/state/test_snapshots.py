@@ -3,10 +3,13 @@
 from dataclasses import replace
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
 from robots import crate
 
+from arm_control.errors import StateError
+from arm_control.state.encoding import decode, encode
 from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.state.snapshots import (
     MAGIC,
@@ -19,6 +22,8 @@ from arm_gazebo.world.editor import SpawnRequest, WorldEditor
 from arm_gazebo.world.spawn_model import ModelSource
 
 CRATE = crate()
+PATCH = f"{mujoco.__version__.rpartition('.')[0]}.99"
+"""Another patch release of the MuJoCo in use."""
 
 
 class Kept:
@@ -170,6 +175,33 @@ def test_another_version_of_mujoco_is_refused(kept, tmp_path):
     write_snapshot(file, replace(saved, made_with={**saved.made_with, "mujoco": "3.0"}))
     _, message = refusal(lambda: run.snapshots.restore(str(file)))
     assert "was made with MuJoCo 3.0" in message
+
+
+def test_another_patch_release_of_mujoco_is_a_remark(kept, tmp_path):
+    file = tmp_path / "a.snapshot"
+    run = kept()
+    saved = run.snapshots.save("a")
+    made_with = {**saved.made_with, "mujoco": PATCH}
+    write_snapshot(file, replace(saved, made_with=made_with))
+    _, remark = run.snapshots.restore(str(file))
+    assert f"made with mujoco {PATCH} (here {mujoco.__version__})" in remark
+    write_snapshot(file, replace(saved, made_with=made_with, model="of another one"))
+    _, message = refusal(lambda: run.snapshots.restore(str(file)))
+    assert f"MuJoCo {PATCH} may also have built it otherwise than {mujoco.__version__}" in message
+
+
+@pytest.mark.parametrize("part", ["model", "arrays"])
+@pytest.mark.parametrize("name", ["dof_M0", "qpos", "none_such"])
+def test_arrays_that_mujoco_does_not_have_here_are_refused(kept, part, name):
+    run = kept()
+    run.snapshots.save("a")
+    saved = run.snapshots.named()["a"]
+    state = decode(saved.state)
+    state["simulation"]["physics"][part][name] = np.zeros(3)
+    position = run.robot.simulation.data.qpos.copy()
+    with pytest.raises(StateError, match=f"array {name} does not fit this model in MuJoCo"):
+        run.robot.state.restore(encode(state))
+    assert np.array_equal(run.robot.simulation.data.qpos, position)
 
 
 def test_another_machine_is_a_remark(kept, tmp_path):
