@@ -5,11 +5,9 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from rclpy.parameter import parameter_value_to_python
-from rclpy.qos import QoSCompatibility, qos_check_compatible
+from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 from rclpy.serialization import deserialize_message
 from rclpy.topic_endpoint_info import TopicEndpointInfo
-from sensor_msgs.msg import JointState
-from std_msgs.msg import Bool, String
 
 from arm_cli.doctor.observation import (
     ClockReading,
@@ -60,120 +58,39 @@ def command_controllers(
     }
 
 
-class CommandListener:
-    """Counts the messages of one topic, and compares the last one's stamp with the clock.
+class _Heard:
+    """What one topic says while the doctor listens.
 
     Attributes:
         topic: the topic's absolute name.
+        received: the number of messages received.
+        clock_s: the simulation time at the last one's arrival; None if it was not known.
     """
 
     def __init__(
         self,
         session: CommandSession,
+        clock: ClockListener,
         topic: str,
         type_name: str,
-        controller: LoadedController | None,
-        clock: ClockListener,
+        profile: QoSProfile = MEASURING,
     ) -> None:
-        """Subscribe with the session's node."""
-        self.topic = topic
-        self._controller = controller
-        self._clock = clock
-        self._received = 0
-        self._ahead_s: float | None = None
-        self._lasting_s = 0.0
-        message_class = load_class(InterfaceIndex().find(type_name, ("msg",)))
-        session.node.create_subscription(message_class, topic, self._take, MEASURING)
-
-    def report(self, publishers: tuple[str, ...], listeners: tuple[str, ...]) -> SetpointTopic:
-        """Return the observed topic with its publishers and subscribers."""
-        return SetpointTopic(
-            self.topic,
-            publishers,
-            listeners,
-            controller=self._controller.name if self._controller else "",
-            state=self._controller.state if self._controller else "",
-            received=self._received,
-            ahead_s=self._ahead_s,
-            lasting_s=self._lasting_s,
-        )
-
-    def _take(self, message: Any) -> None:
-        self._received += 1
-        header = getattr(message, "header", None)
-        stamp_s = header.stamp.sec + header.stamp.nanosec * 1e-9 if header else 0.0
-        # A stamp of 0 means "now".
-        self._ahead_s = stamp_s - self._clock.now_s if stamp_s and self._clock.has_begun else None
-        times = [p.time_from_start for p in getattr(message, "points", ())]
-        self._lasting_s = max((t.sec + t.nanosec * 1e-9 for t in times), default=0.0)
-
-
-class JointStateListener:
-    """Counts the joint states of one topic.
-
-    Attributes:
-        topic: the topic's absolute name.
-        received: the number of messages received.
-    """
-
-    def __init__(self, session: CommandSession, topic: str) -> None:
-        """Subscribe with the session's node."""
         self.topic = topic
         self.received = 0
+        self.clock_s: float | None = None
+        self._clock = clock
         self._last = b""
-        session.node.create_subscription(JointState, topic, self._take, MEASURING, raw=True)
+        self._class = load_class(InterfaceIndex().find(type_name, ("msg",)))
+        # Only the last message is read: a fast topic would take all the time.
+        session.node.create_subscription(self._class, topic, self._take, profile, raw=True)
 
-    def not_numbers(self) -> tuple[str, ...]:
-        """Return the NaN values of the last message, as interfaces such as 'j0/position'."""
-        if not self.received:
-            return ()
-        message = deserialize_message(self._last, JointState)
-        values = {
-            "position": message.position,
-            "velocity": message.velocity,
-            "effort": message.effort,
-        }
-        return tuple(
-            f"{joint}/{kind}"
-            for kind, numbers in values.items()
-            for joint, number in zip(message.name, numbers, strict=False)
-            if math.isnan(number)
-        )
+    def last(self) -> Any:
+        """Return the last message; None before the first."""
+        return deserialize_message(self._last, self._class) if self.received else None
 
-    def _take(self, message: bytes) -> None:
-        self.received += 1
-        self._last = message
-
-
-class DescriptionListener:
-    """Waits for a robot description.
-
-    Attributes:
-        topic: the topic's absolute name.
-        text: the description, empty until it arrives.
-    """
-
-    def __init__(self, session: CommandSession, topic: str) -> None:
-        """Subscribe with transient_local durability, as late joiners do."""
-        self.topic = topic
-        self.text = ""
-        session.node.create_subscription(String, topic, self._take, LATCHED)
-
-    def _take(self, message: String) -> None:
-        self.text = message.data
-
-
-class StopListener:
-    """Listens to whether an emergency stop is latched."""
-
-    def __init__(self, session: CommandSession, topic: str) -> None:
-        self.topic = topic
-        self.is_heard = self.is_engaged = False
-
-        def take(message: Bool) -> None:
-            self.is_heard, self.is_engaged = True, message.data
-
-        session.node.create_subscription(Bool, topic, take, LATCHED)
+    def _take(self, data: bytes) -> None:
+        self.received, self._last = self.received + 1, data
+        self.clock_s = self._clock.now_s if self._clock.has_begun else None
 
 
 WINDOW_S = 1.0
@@ -185,7 +102,7 @@ CLOCK = "/clock"
 DESCRIPTION, DESCRIPTION_TYPE = "robot_description", "std_msgs/msg/String"
 STATES, STATES_TYPE = "joint_states", "sensor_msgs/msg/JointState"
 FACTOR = "real_time_factor"
-STOPPED = "/emergency_stop/active"
+STOPPED, STOPPED_TYPE = "/emergency_stop/active", "std_msgs/msg/Bool"
 
 
 def observe(session: CommandSession) -> GraphObservation:
@@ -200,31 +117,37 @@ def observe(session: CommandSession) -> GraphObservation:
     topics = graph.topics()
     clock = ClockListener(session)
     descriptions = [
-        DescriptionListener(session, name)
+        _Heard(session, clock, name, DESCRIPTION_TYPE, LATCHED)
         for name in _named(topics, DESCRIPTION, DESCRIPTION_TYPE)
         if graph.publishers(name)
     ]
-    states = [JointStateListener(session, name) for name in _named(topics, STATES, STATES_TYPE)]
+    states = [
+        _Heard(session, clock, name, STATES_TYPE) for name in _named(topics, STATES, STATES_TYPE)
+    ]
     commands = [
-        CommandListener(session, name, topics[name][0], controller, clock)
+        (_Heard(session, clock, name, topics[name][0]), controller)
         for name, controller in command_controllers(topics, managers).items()
     ]
-    stops = [StopListener(session, name) for name in topics if name.endswith(STOPPED)]
+    stops = [
+        _Heard(session, clock, name, STOPPED_TYPE, LATCHED)
+        for name in topics
+        if name.endswith(STOPPED)
+    ]
     if CLOCK in topics and graph.publishers(CLOCK):
         session.wait_until(lambda: clock.has_begun, timeout_s=FIRST_MESSAGE_S)
     session.spin_for(WINDOW_S)
     session.wait_until(
         lambda: (
-            all(d.text for d in descriptions)
+            all(map(_text, descriptions))
             and all(s.received for s in states if graph.publishers(s.topic))
-            and all(s.is_heard for s in stops)
+            and all(s.received for s in stops)
         ),
         timeout_s=FIRST_MESSAGE_S,
     )
     return GraphObservation(
         managers=managers,
         publishers={name: _names(graph.publishers(name)) for name in topics},
-        descriptions={d.topic: d.text for d in descriptions},
+        descriptions={d.topic: _text(d) for d in descriptions},
         clock=_reading(session, graph, clock),
         clock_readers=_names(graph.subscriptions(CLOCK)),
         joint_states=tuple(
@@ -233,16 +156,13 @@ def observe(session: CommandSession) -> GraphObservation:
                 _names(graph.publishers(s.topic)),
                 _names(graph.subscriptions(s.topic)),
                 s.received,
-                s.not_numbers(),
+                _not_numbers(s),
             )
             for s in states
         ),
         mismatches=tuple(m for name in topics for m in _mismatches(graph, name)),
-        commands=tuple(
-            c.report(_names(graph.publishers(c.topic)), _names(graph.subscriptions(c.topic)))
-            for c in commands
-        ),
-        stopped=tuple(s.topic for s in stops if s.is_engaged),
+        commands=tuple(_setpoints(graph, heard, controller) for heard, controller in commands),
+        stopped=tuple(s.topic for s in stops if s.received and s.last().data),
         nodes=tuple(node.full_name for node in graph.nodes(hidden=False)),
     )
 
@@ -254,6 +174,47 @@ def _named(topics: Mapping[str, list[str]], name: str, type_name: str) -> list[s
         for topic, types in topics.items()
         if topic.rpartition("/")[2] == name and types == [type_name]
     ]
+
+
+def _text(description: _Heard) -> str:
+    """Return a robot description, empty until it arrives."""
+    return description.last().data if description.received else ""
+
+
+def _not_numbers(states: _Heard) -> tuple[str, ...]:
+    """Return the NaN values of the last joint states, as interfaces such as 'j0/position'."""
+    message = states.last()
+    if message is None:
+        return ()
+    values = {
+        "position": message.position,
+        "velocity": message.velocity,
+        "effort": message.effort,
+    }
+    return tuple(
+        f"{joint}/{kind}"
+        for kind, numbers in values.items()
+        for joint, number in zip(message.name, numbers, strict=False)
+        if math.isnan(number)
+    )
+
+
+def _setpoints(graph: Graph, heard: _Heard, controller: LoadedController | None) -> SetpointTopic:
+    message = heard.last()
+    header = getattr(message, "header", None)
+    # A stamp of 0 means "now".
+    stamp_s = header.stamp.sec + header.stamp.nanosec * 1e-9 if header else 0.0
+    times = [point.time_from_start for point in getattr(message, "points", ())]
+    return SetpointTopic(
+        heard.topic,
+        _names(graph.publishers(heard.topic)),
+        _names(graph.subscriptions(heard.topic)),
+        controller=controller.name if controller else "",
+        state=controller.state if controller else "",
+        received=heard.received,
+        ahead_s=stamp_s - heard.clock_s if stamp_s and heard.clock_s is not None else None,
+        lasting_s=max((time.sec + time.nanosec * 1e-9 for time in times), default=0.0),
+    )
 
 
 def _ask(session: CommandSession, name: str) -> ControlState:
