@@ -22,7 +22,7 @@ from arm_viewer.calls.call import (
 )
 from arm_viewer.calls.form import form_of, read_form
 from arm_viewer.ros.goal_call import GoalCall
-from arm_viewer.ros.observer import TopicTypes, used_types
+from arm_viewer.ros.observer import Observer, TopicTypes, used_types
 from arm_viewer.ros.parameter_call import ParameterForm, ParameterSetting
 from arm_viewer.ros.publication import Publication
 from arm_viewer.ros.service_call import ServiceCall
@@ -55,7 +55,7 @@ class OngoingCall(Protocol):
         ...
 
 
-class CallDesk:
+class CallDesk(Observer):
     """Lists what can be called, and places the calls.
 
     Attributes:

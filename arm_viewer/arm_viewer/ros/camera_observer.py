@@ -10,14 +10,21 @@ from sensor_msgs.msg import CameraInfo, Image
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.qos import NEWEST
 from arm_viewer.requests import ShowPictures
-from arm_viewer.ros.observer import TopicTypes, topics_of, type_name, used_types
+from arm_viewer.ros.observer import (
+    Observer,
+    TopicTypes,
+    keep_in_step,
+    topics_of,
+    type_name,
+    used_types,
+)
 from arm_viewer.ros.topic_reader import TopicReader
 from arm_viewer.snapshot import CameraView, Picture, frame_name
 
 _IMAGE_TYPE = type_name(Image)
 
 
-class CameraObserver:
+class CameraObserver(Observer):
     """Keeps the latest intrinsics of every published camera, without its images."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
@@ -31,10 +38,11 @@ class CameraObserver:
         """Subscribe to new cameras, and forget cameras that are no longer published."""
         named = topics_of(CameraInfo, topics, self._node)
         found = {topic for topic in named if self._node.count_publishers(topic)}
-        for topic in self._readers.keys() - found:
-            self._readers.pop(topic).close()
-        for topic in found - self._readers.keys():
-            self._readers[topic] = TopicReader(self._node, self._polled, CameraInfo, topic, NEWEST)
+        keep_in_step(
+            self._readers,
+            found,
+            lambda topic: TopicReader(self._node, self._polled, CameraInfo, topic, NEWEST),
+        )
         if self.views.keys() - found:
             self._keep({topic: view for topic, view in self.views.items() if topic in found})
 
@@ -67,7 +75,7 @@ def camera_view(message: CameraInfo) -> CameraView | None:
     return CameraView(frame, message.width, message.height, (fx, fy), (cx, cy))
 
 
-class ImageObserver:
+class ImageObserver(Observer):
     """Lists all image topics, and keeps the latest image of the requested ones."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
@@ -80,13 +88,13 @@ class ImageObserver:
 
     def serve(self, request: ShowPictures) -> None:
         """Subscribe to the requested topics, and end the other subscriptions."""
-        for topic in self._readers.keys() - request.topics:
-            self._readers.pop(topic).close()
+        # This node may use a topic with another type by now.
         used = used_types(self._node)
-        for topic in request.topics - self._readers.keys():
-            # This node may use the topic with another type by now.
-            if used.get(topic, _IMAGE_TYPE) == _IMAGE_TYPE:
-                self._readers[topic] = TopicReader(self._node, self._polled, Image, topic, NEWEST)
+        keep_in_step(
+            self._readers,
+            {topic for topic in request.topics if used.get(topic, _IMAGE_TYPE) == _IMAGE_TYPE},
+            lambda topic: TopicReader(self._node, self._polled, Image, topic, NEWEST),
+        )
         kept = {t: picture for t, picture in self.pictures.items() if t in request.topics}
         self.pictures = MappingProxyType(kept)
 

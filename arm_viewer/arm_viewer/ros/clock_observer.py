@@ -10,7 +10,7 @@ from rosgraph_msgs.msg import Clock
 
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.qos import NEWEST
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import Observer, TopicTypes
 from arm_viewer.snapshot import SimulationTime
 
 TOPIC = "/clock"
@@ -18,7 +18,7 @@ PAUSED_AFTER_S = 0.5
 """After this time without a message the simulation counts as paused."""
 
 
-class ClockObserver:
+class ClockObserver(Observer):
     """Keeps the progress of simulation time while /clock is published."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:

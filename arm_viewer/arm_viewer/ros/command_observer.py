@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -11,7 +12,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Float64MultiArray
 
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_viewer.ros.observer import TopicTypes, topics_of
+from arm_viewer.ros.observer import Observer, TopicTypes, keep_in_step, topics_of
 from arm_viewer.ros.topic_reader import TopicReader
 from arm_viewer.snapshot import ListedController
 
@@ -19,7 +20,7 @@ PERIOD_S = 0.09
 _QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-class CommandObserver:
+class CommandObserver(Observer):
     """Keeps the latest command of every interface that an active controller claims.
 
     Commands are kept by namespace, because robots of one kind have the same joint names.
@@ -35,8 +36,8 @@ class CommandObserver:
         self._node = node
         self._polled = polled
         self._controllers = controllers
-        self._arrays: dict[str, TopicReader[Float64MultiArray]] = {}
-        self._trajectories: dict[str, TopicReader[JointTrajectoryControllerState]] = {}
+        self._arrays: dict[str, TopicReader[Any]] = {}
+        self._trajectories: dict[str, TopicReader[Any]] = {}
         self._collected_s = -math.inf
         self.commands: Mapping[str, Mapping[str, float]] = MappingProxyType({})
 
@@ -45,17 +46,12 @@ class CommandObserver:
         active = [c for c in self._controllers() if c.state == "active"]
         self._forget_all_but({(c.namespace, name) for c in active for name in c.claimed})
         prefixes = [_prefix(controller) for controller in active]
-        _follow(
-            self._arrays,
-            {f"{p}/commands" for p in prefixes} & topics_of(Float64MultiArray, topics, self._node),
-            lambda topic: self._reader(Float64MultiArray, topic),
-        )
-        states = {f"{p}/controller_state" for p in prefixes}
-        _follow(
-            self._trajectories,
-            states & topics_of(JointTrajectoryControllerState, topics, self._node),
-            lambda topic: self._reader(JointTrajectoryControllerState, topic),
-        )
+        for kind, readers, ending in (
+            (Float64MultiArray, self._arrays, "commands"),
+            (JointTrajectoryControllerState, self._trajectories, "controller_state"),
+        ):
+            wanted = {f"{p}/{ending}" for p in prefixes} & topics_of(kind, topics, self._node)
+            keep_in_step(readers, wanted, partial(self._reader, kind))
 
     def collect(self, now_s: float) -> None:
         """Take what has arrived, ten times a second: a trajectory controller says a lot."""
@@ -107,14 +103,3 @@ class CommandObserver:
 
 def _prefix(controller: ListedController) -> str:
     return f"{controller.namespace}/{controller.name}"
-
-
-def _follow(
-    readers: dict[str, TopicReader[Any]],
-    wanted: set[str],
-    make: Callable[[str], TopicReader[Any]],
-) -> None:
-    for topic in readers.keys() - wanted:
-        readers.pop(topic).close()
-    for topic in wanted - readers.keys():
-        readers[topic] = make(topic)

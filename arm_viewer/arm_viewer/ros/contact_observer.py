@@ -7,14 +7,14 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.qos import LATCHED
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import Observer, TopicTypes
 from arm_viewer.ros.topic_reader import TopicGroup
 from arm_viewer.snapshot import ContactForces, frame_name
 
 WORD = "contact_markers"
 
 
-class ContactObserver:
+class ContactObserver(Observer):
     """Keeps the latest contacts of one simulation; subscribes only while they are wanted."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:

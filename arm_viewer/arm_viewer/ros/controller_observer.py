@@ -8,7 +8,7 @@ from rclpy.node import Node
 
 from arm_node.controller_manager import SERVICES, switch_request
 from arm_viewer.requests import Configure, SwitchControllers
-from arm_viewer.ros.observer import TopicTypes, served
+from arm_viewer.ros.observer import Observer, TopicTypes, keep_in_step, served
 from arm_viewer.ros.service_caller import ServiceCaller
 from arm_viewer.snapshot import ListedController
 
@@ -18,7 +18,7 @@ JOINTS = "joints"
 """The parameter with the order in which a controller takes the values of its joints."""
 
 
-class ControllerObserver:
+class ControllerObserver(Observer):
     """Keeps the managers' latest lists of controllers, in their order."""
 
     def __init__(self, node: Node, is_watched: Callable[[], bool]) -> None:
@@ -35,16 +35,10 @@ class ControllerObserver:
     def discover(self, topics: TopicTypes) -> None:
         """Query every present manager; forget managers that have disappeared."""
         found = served(self._node, SERVICE, SERVICE_TYPE)
-        for name in self._managers.keys() - found:
-            self._managers.pop(name).close()
-        for name in sorted(found - self._managers.keys()):
-            self._managers[name] = _ListedManager(self._node, name)
+        keep_in_step(self._managers, sorted(found), lambda name: _ListedManager(self._node, name))
         for manager in self._managers.values():
             if self._is_watched() or not manager.controllers:
                 manager.ask()
-
-    def collect(self, now_s: float) -> None:
-        """Do nothing: answers arrive in callbacks."""
 
 
 class _ListedManager:
@@ -105,7 +99,7 @@ def _joints_of(answer: GetParameters.Response) -> tuple[str, ...]:
     return tuple(name for value in answer.values for name in value.string_array_value)
 
 
-class ManagerCaller:
+class ManagerCaller(Observer):
     """Keeps clients for each manager ready, so that a request does not wait for discovery.
 
     Attributes:
@@ -122,13 +116,7 @@ class ManagerCaller:
     def discover(self, topics: TopicTypes) -> None:
         """Create clients for new managers; destroy those of managers that have disappeared."""
         found = {controller.manager for controller in self._controllers()}
-        for name in self._managers.keys() - found:
-            self._managers.pop(name).close()
-        for name in found - self._managers.keys():
-            self._managers[name] = _ManagerClients(self._node, name)
-
-    def collect(self, now_s: float) -> None:
-        """Do nothing: answers arrive in callbacks."""
+        keep_in_step(self._managers, found, lambda name: _ManagerClients(self._node, name))
 
     def serve(self, request: SwitchControllers | Configure) -> None:
         """Call the manager, and store its refusal in `refusal`."""

@@ -15,13 +15,13 @@ from arm_viewer.plots.field_paths import NumberPath, numbers_in, parse_curve, re
 from arm_viewer.plots.history import Curves, GapFinder
 from arm_viewer.requests import ListNumbers, PlotCurves
 from arm_viewer.ros.graph_observer import message_class_of
-from arm_viewer.ros.observer import TopicTypes, used_types
+from arm_viewer.ros.observer import Observer, TopicTypes, used_types
 
 DEPTH = 1000
 """No message of 500 Hz is lost, even if the page does nothing for two seconds."""
 
 
-class FieldObserver:
+class FieldObserver(Observer):
     """Subscribes to the topics of the curves that are wanted, and reads their numbers."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:

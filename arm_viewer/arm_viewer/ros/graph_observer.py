@@ -14,7 +14,7 @@ from rclpy.subscription import Subscription
 
 from arm_node.drawing import NodeTopics
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_viewer.ros.observer import TopicTypes, used_types
+from arm_viewer.ros.observer import Observer, TopicTypes, used_types
 from arm_viewer.snapshot import SimulationTime, Topic
 
 WINDOW_S = 3.0
@@ -23,7 +23,7 @@ DEPTH = 100
 _QOS = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-class TopicObserver:
+class TopicObserver(Observer):
     """Lists the topics of other nodes; subscribes to all of them while rates are wanted."""
 
     def __init__(
@@ -153,7 +153,7 @@ def message_class_of(message_type: str) -> type | None:
 NamesAndTypes = list[tuple[str, list[str]]]
 
 
-class NodeObserver:
+class NodeObserver(Observer):
     """Lists the other nodes, sorted, with one entry for each name."""
 
     def __init__(self, node: Node) -> None:
@@ -167,9 +167,6 @@ class NodeObserver:
         names = sorted(set(self._node.get_node_names_and_namespaces()))
         nodes = tuple(self._topics_of(name, namespace) for name, namespace in names)
         self.nodes = tuple(node for node in nodes if node.name != self._own)
-
-    def collect(self, now_s: float) -> None:
-        """Do nothing: `discover` reads the graph once a second."""
 
     def _topics_of(self, name: str, namespace: str) -> NodeTopics:
         def topics(ask: Callable[[str, str], NamesAndTypes]) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from arm_description.publishers.joint_state_merge import JointStateMerge
 from arm_description.publishers.settings import JointPublisherSettings
 from arm_viewer.joint_move import DriveKind, JointDrive, JointMove, joint_drives, plan_moves
 from arm_viewer.requests import MoveJoints
-from arm_viewer.ros.observer import TopicTypes, type_name, used_types
+from arm_viewer.ros.observer import Observer, TopicTypes, keep_in_step, type_name, used_types
 from arm_viewer.ros.service_caller import ServiceCaller
 from arm_viewer.snapshot import Description, Snapshot
 
@@ -106,7 +106,7 @@ def _goal(move: JointMove) -> Any:
     return goal
 
 
-class JointCommander:
+class JointCommander(Observer):
     """Sends moves to the active controllers; use it only in the executor's thread.
 
     Publishers and clients are created as soon as a controller is active, before the first move,
@@ -128,16 +128,13 @@ class JointCommander:
             for namespace in {d.namespace for d in snapshot.descriptions.values()}
             for drive in joint_drives(snapshot.controllers, namespace)
         }
-        for key in self._senders.keys() - drives.keys():
-            self._senders.pop(key).close()
         used = used_types(self._node)
-        for key in drives.keys() - self._senders.keys():
-            name, kind = key
-            if kind in ACTIONS or used.get(name) in (None, type_name(MESSAGES[kind])):
-                self._senders[key] = _sender(self._node, drives[key])
-
-    def collect(self, now_s: float) -> None:
-        """Do nothing: this observer only sends."""
+        usable = [
+            (name, kind)
+            for name, kind in drives
+            if kind in ACTIONS or used.get(name) in (None, type_name(MESSAGES[kind]))
+        ]
+        keep_in_step(self._senders, usable, lambda key: _sender(self._node, drives[key]))
 
     def move(self, request: MoveJoints) -> None:
         """Send the positions to the controllers of their joints."""

@@ -15,7 +15,7 @@ from sensor_msgs.msg import JointState
 
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.qos import NEWEST
-from arm_viewer.ros.observer import TopicTypes, topics_of
+from arm_viewer.ros.observer import Observer, TopicTypes, keep_in_step, topics_of
 from arm_viewer.ros.topic_reader import TopicGroup, TopicReader
 from arm_viewer.snapshot import JointReading, JointStates
 
@@ -23,7 +23,7 @@ WORD = "joint_states"
 _QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-class JointStateObserver:
+class JointStateObserver(Observer):
     """Keeps the latest reading of every published joint.
 
     Attributes:
@@ -90,7 +90,7 @@ SUFFIX = "/introspection_data/full"
 KIND, INTERFACE = "state_interface.", "/position"
 
 
-class HardwareObserver:
+class HardwareObserver(Observer):
     """Keeps the hardware's joint positions where nobody publishes joint states.
 
     Attributes:
@@ -116,13 +116,14 @@ class HardwareObserver:
             and self._node.count_publishers(topic)
             and not self._node.count_publishers(f"{_namespace(topic)}/joint_states")
         }
-        for topic in self._readers.keys() - wanted:
-            self._readers.pop(topic).close()
-            self.positions = {n: p for n, p in self.positions.items() if n != _namespace(topic)}
-        for topic in wanted - self._readers.keys():
-            self._readers[topic] = TopicReader(
-                self._node, self._polled, self._message_class, topic, NEWEST
-            )
+        keep_in_step(
+            self._readers,
+            wanted,
+            lambda topic: TopicReader(self._node, self._polled, self._message_class, topic, NEWEST),
+        )
+        known = set(map(_namespace, wanted))
+        if self.positions.keys() - known:
+            self.positions = {name: p for name, p in self.positions.items() if name in known}
 
     def collect(self, now_s: float) -> None:
         """Take what has arrived."""

@@ -9,7 +9,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import Observer
 from arm_viewer.ros.topic_reader import TopicReader
 from arm_viewer.snapshot import ComponentStatus, LogEntry
 
@@ -20,17 +20,14 @@ _LATCHED = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _QOS = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-class LogObserver:
-    """Keeps the newest messages of /rosout."""
+class LogObserver(Observer):
+    """Keeps the newest messages of /rosout; what was said stays."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
         """Subscribe; nodes repeat what they said in the last seconds."""
         self._reader = TopicReader(node, polled, Log, "/rosout", _LATCHED)
         self._number = 0
         self.entries: tuple[LogEntry, ...] = ()
-
-    def discover(self, topics: TopicTypes) -> None:
-        """Do nothing: what was said stays."""
 
     def collect(self, now_s: float) -> None:
         """Take what has arrived."""
@@ -50,16 +47,13 @@ class LogObserver:
         )
 
 
-class DiagnosticObserver:
-    """Keeps the last status of each component on /diagnostics."""
+class DiagnosticObserver(Observer):
+    """Keeps the last status of each component on /diagnostics; the page shows how old it is."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
         """Subscribe."""
         self._reader = TopicReader(node, polled, DiagnosticArray, "/diagnostics", _QOS)
         self.diagnoses: Mapping[str, ComponentStatus] = MappingProxyType({})
-
-    def discover(self, topics: TopicTypes) -> None:
-        """Do nothing: a status that is not renewed is shown as old."""
 
     def collect(self, now_s: float) -> None:
         """Take what has arrived."""

@@ -11,7 +11,7 @@ from visualization_msgs.msg import MarkerArray
 
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.rigid_transform import RigidTransform
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import Observer, TopicTypes
 from arm_viewer.ros.topic_reader import TopicGroup
 from arm_viewer.snapshot import Marker, MarkerLook, MarkerShape, frame_name
 
@@ -26,7 +26,7 @@ _SHAPES = {
 }
 
 
-class MarkerObserver:
+class MarkerObserver(Observer):
     """Keeps the latest marker of each name; unsupported types are left out."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:

@@ -1,7 +1,7 @@
-"""The interface of every observer of topics or services, and shared look-ups of topic types."""
+"""The base of every observer of topics or services, and shared look-ups of topic types."""
 
-from collections.abc import Collection, Mapping, Sequence
-from typing import Any, Protocol
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
+from typing import Any, Protocol, TypeVar
 
 from rclpy.node import Node
 from rclpy.subscription import Subscription
@@ -13,7 +13,7 @@ _OF_RCL = {"/rosout": "rcl_interfaces/msg/Log"}
 """Endpoints that rcl makes for every node, which rclpy does not list."""
 
 
-class Observer(Protocol):
+class Observer:
     """Observes one aspect of the graph; used only in the executor's thread.
 
     Each observer offers its findings as frozen data in an attribute. The node combines them in a
@@ -22,11 +22,32 @@ class Observer(Protocol):
 
     def discover(self, topics: TopicTypes) -> None:
         """Look for new and disappeared topics or services; called once a second."""
-        ...
 
     def collect(self, now_s: float) -> None:
         """Take the messages that have arrived since the last call; called 30 times a second."""
+
+
+class Closable(Protocol):
+    """Something with end points on the graph."""
+
+    def close(self) -> None:
+        """Destroy them."""
         ...
+
+
+Key = TypeVar("Key", bound=Hashable)
+Kept = TypeVar("Kept", bound=Closable)
+
+
+def keep_in_step(
+    kept: dict[Key, Kept], wanted: Collection[Key], make: Callable[[Key], Kept]
+) -> None:
+    """Close and drop what is not wanted any more, and make what is wanted and not there yet."""
+    for key in [key for key in kept if key not in wanted]:
+        kept.pop(key).close()
+    for key in wanted:
+        if key not in kept:
+            kept[key] = make(key)
 
 
 def type_name(message_class: type) -> str:

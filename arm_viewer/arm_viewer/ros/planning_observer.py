@@ -12,7 +12,7 @@ from arm_description.urdf.robot import Robot
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.qos import LATCHED
 from arm_viewer.planning_requests import PlanningRequest
-from arm_viewer.ros.observer import TopicTypes, served
+from arm_viewer.ros.observer import Observer, TopicTypes, served
 from arm_viewer.ros.topic_reader import TopicGroup
 from arm_viewer.snapshot import SimulationTime, Snapshot
 
@@ -26,7 +26,7 @@ SEMANTIC = "robot_description_semantic"
 _logger = logging.getLogger(__name__)
 
 
-class PlanningObserver:
+class PlanningObserver(Observer):
     """Keeps a client of each move_group whose robot is known.
 
     Without the package moveit_msgs it finds nothing. It and planning's code are imported with the

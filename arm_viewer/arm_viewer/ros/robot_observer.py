@@ -16,14 +16,14 @@ from arm_description.urdf.parser import parse_urdf
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.qos import LATCHED
 from arm_node.rigid_transform import RigidTransform
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import Observer, TopicTypes
 from arm_viewer.ros.topic_reader import TopicGroup, TopicReader
 from arm_viewer.snapshot import Description, Transform, frame_name
 
 DESCRIPTION_WORD = "robot_description"
 
 
-class DescriptionObserver:
+class DescriptionObserver(Observer):
     """Keeps the latest description of every published topic.
 
     Attributes:
@@ -74,7 +74,7 @@ _TF_QOS = QoSProfile(depth=100)
 _STATIC_QOS = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-class TransformObserver:
+class TransformObserver(Observer):
     """Keeps the latest transform of every published frame."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:

@@ -26,7 +26,7 @@ from arm_viewer.requests import (
     StepRun,
     UseSnapshot,
 )
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import Observer, TopicTypes
 from arm_viewer.ros.run_observer import SERVICE, SPEED
 from arm_viewer.snapshot import ControlAnswer
 
@@ -61,7 +61,7 @@ class ControlAnswers:
         self.last = ControlAnswer(self.last.number + 1, text, is_done)
 
 
-class RunCommander:
+class RunCommander(Observer):
     """Calls the services of the simulation, and keeps what they answer."""
 
     def __init__(self, node: Node, answers: ControlAnswers, changed: Callable[[], None]) -> None:

@@ -9,7 +9,7 @@ from rcl_interfaces.srv import GetParameters
 from rclpy.node import Node
 from simulation_interfaces.srv import GetAvailableWorlds, GetSimulationState
 
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import Observer, TopicTypes
 from arm_viewer.ros.service_caller import ServiceCaller
 from arm_viewer.snapshot import NamedSnapshot, RunStatus
 
@@ -24,7 +24,7 @@ RARE = 3
 """Speed and snapshots seldom change behind the page's back: they are asked in every third look."""
 
 
-class RunObserver:
+class RunObserver(Observer):
     """Asks once a second, and at once after a change.
 
     Attributes:

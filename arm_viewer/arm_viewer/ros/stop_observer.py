@@ -13,7 +13,7 @@ from std_srvs.srv import SetBool
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.qos import LATCHED
 from arm_viewer.requests import SetEmergencyStop
-from arm_viewer.ros.observer import TopicTypes, served
+from arm_viewer.ros.observer import Observer, TopicTypes, served
 from arm_viewer.ros.run_commander import ControlAnswers
 from arm_viewer.ros.topic_reader import TopicGroup
 
@@ -24,7 +24,7 @@ ANSWER_S = 3.0
 """A stop that is not confirmed within this time is reported."""
 
 
-class StopObserver:
+class StopObserver(Observer):
     """Keeps whether each emergency stop is engaged, whoever engaged it.
 
     Attributes:

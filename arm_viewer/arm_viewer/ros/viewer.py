@@ -3,6 +3,7 @@
 import logging
 import time
 from queue import Empty, SimpleQueue
+from typing import TypeVar
 
 from rclpy.context import Context
 from rclpy.node import Node
@@ -61,6 +62,7 @@ UNWATCHED_TICK_S = 0.2
 DISCOVERY_PERIOD_S = 1.0
 DEFAULT_PORT = 8080
 
+Observing = TypeVar("Observing", bound=Observer)
 _read_port = IntegerReader("a port, from 0 to 65535", 0, 65535)
 
 
@@ -91,6 +93,7 @@ class Viewer(Node):
             "publish joint states from the sliders, for a robot that is not running",
         )
         self._is_watched = True
+        self._observers: list[Observer] = []
         self._observe(PolledSubscriptions(self), displays)
         self._logged: set[str] = set()
         self._latest = Snapshot()
@@ -105,60 +108,43 @@ class Viewer(Node):
         def is_watched() -> bool:
             return self._is_watched
 
-        self._descriptions = DescriptionObserver(self, polled)
-        self._transforms = TransformObserver(self, polled)
-        self._joint_states = JointStateObserver(self, polled)
-        self._hardware = HardwareObserver(self, polled)
-        self._images = ImageObserver(self, polled)
-        self._cameras = CameraObserver(self, polled)
-        self._markers = MarkerObserver(self, polled)
-        self._contacts = ContactObserver(self, polled)
-        self._controllers = ControllerObserver(self, is_watched)
-        self._managers = ManagerCaller(self, self._listed)
-        self._commands = CommandObserver(self, polled, self._listed)
-        self._commander = JointCommander(self, self.latest)
+        self._descriptions = self._observing(DescriptionObserver(self, polled))
+        self._transforms = self._observing(TransformObserver(self, polled))
+        self._joint_states = self._observing(JointStateObserver(self, polled))
+        self._hardware = self._observing(HardwareObserver(self, polled))
+        self._images = self._observing(ImageObserver(self, polled))
+        self._cameras = self._observing(CameraObserver(self, polled))
+        self._markers = self._observing(MarkerObserver(self, polled))
+        self._contacts = self._observing(ContactObserver(self, polled))
+        self._controllers = self._observing(ControllerObserver(self, is_watched))
+        self._managers = self._observing(ManagerCaller(self, self._listed))
+        self._commands = self._observing(CommandObserver(self, polled, self._listed))
+        self._commander = self._observing(JointCommander(self, self.latest))
         self._source = JointStateSource(self, self.latest) if displays else None
-        self._simulation_clock = ClockObserver(self, polled)
+        self._simulation_clock = self._observing(ClockObserver(self, polled))
         self._answers = ControlAnswers()
-        self._run = RunObserver(self, is_watched)
-        self._run_commander = RunCommander(self, self._answers, self._run.ask_again)
-        self._stops = StopObserver(self, polled, self._answers)
-        self._world = WorldClient(self, is_watched)
-        self._topics = TopicObserver(self, polled, lambda: self._simulation_clock.time)
-        self._log = LogObserver(self, polled)
-        self._diagnoses = DiagnosticObserver(self, polled)
-        self._fields = FieldObserver(self, polled)
-        self._calls = CallDesk(self)
-        self._nodes = NodeObserver(self)
-        self._planning = PlanningObserver(
-            self, polled, self.latest, lambda: self._simulation_clock.time
+        self._run = self._observing(RunObserver(self, is_watched))
+        self._run_commander = self._observing(
+            RunCommander(self, self._answers, self._run.ask_again)
         )
-        self._observers: tuple[Observer, ...] = (
-            self._descriptions,
-            self._transforms,
-            self._joint_states,
-            self._hardware,
-            self._images,
-            self._cameras,
-            self._markers,
-            self._contacts,
-            self._controllers,
-            self._managers,
-            self._commands,
-            self._commander,
-            self._simulation_clock,
-            self._run,
-            self._run_commander,
-            self._stops,
-            self._world,
-            self._topics,
-            self._log,
-            self._diagnoses,
-            self._fields,
-            self._calls,
-            self._nodes,
-            self._planning,
+        self._stops = self._observing(StopObserver(self, polled, self._answers))
+        self._world = self._observing(WorldClient(self, is_watched))
+        self._topics = self._observing(
+            TopicObserver(self, polled, lambda: self._simulation_clock.time)
         )
+        self._log = self._observing(LogObserver(self, polled))
+        self._diagnoses = self._observing(DiagnosticObserver(self, polled))
+        self._fields = self._observing(FieldObserver(self, polled))
+        self._calls = self._observing(CallDesk(self))
+        self._nodes = self._observing(NodeObserver(self))
+        self._planning = self._observing(
+            PlanningObserver(self, polled, self.latest, lambda: self._simulation_clock.time)
+        )
+
+    def _observing(self, observer: Observing) -> Observing:
+        """Let an observer look and collect from now on; return it."""
+        self._observers.append(observer)
+        return observer
 
     def latest(self) -> Snapshot:
         """Return the latest snapshot; from any thread."""

@@ -26,7 +26,7 @@ from simulation_interfaces.srv import (
 )
 
 from arm_node.rigid_transform import RigidTransform, Vector
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import Observer, TopicTypes
 from arm_viewer.ros.service_caller import ServiceCaller
 from arm_viewer.world.dropped_file import FileCheck
 from arm_viewer.world.world_view import (
@@ -91,7 +91,7 @@ class _WorldChange:
     done: Callable[[Any], str] = field(default=lambda _: "")
 
 
-class WorldClient:
+class WorldClient(Observer):
     """Asks once a second, and ten times a second for the thing that the user looks at.
 
     Attributes:
