@@ -7,7 +7,7 @@ import numpy as np
 from viser import GuiApi, GuiImageHandle
 
 from arm_viewer.errors import PictureError
-from arm_viewer.panels.panel import PROBLEM_COLOUR, Hideable, note, show
+from arm_viewer.panels.panel import Hideable, say, show
 from arm_viewer.picture_pixels import colours
 from arm_viewer.requests import Send, ShowPictures
 from arm_viewer.snapshot import Picture, Snapshot
@@ -94,19 +94,17 @@ class _Camera:
         show(self._folder, is_published)
         if not self._switch.value:
             show(self._image, False)
-            show(self._problem, False)
+            say(self._problem, "")
             self._picture = None
         elif picture is not None and picture is not self._picture:
             self._picture = picture
             self._show(picture)
 
     def _show(self, picture: Picture) -> None:
+        problem = ""
         try:
             self._image.image = colours(picture, MAX_PIXELS_WIDE)
         except PictureError as error:
-            self._problem.content = note(str(error), PROBLEM_COLOUR)
-            show(self._problem, True)
-            show(self._image, False)
-        else:
-            show(self._problem, False)
-            show(self._image, True)
+            problem = str(error)
+        say(self._problem, problem)
+        show(self._image, not problem)

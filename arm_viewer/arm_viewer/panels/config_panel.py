@@ -6,7 +6,7 @@ from queue import Empty, SimpleQueue
 from viser import GuiApi, GuiEvent, GuiUploadButtonHandle, ViserServer
 
 from arm_viewer.errors import ConfigError
-from arm_viewer.panels.panel import PROBLEM_COLOUR, note
+from arm_viewer.panels.panel import fill, say
 from arm_viewer.panels.robot_panel import RobotPanel
 from arm_viewer.rviz_config import PageConfig, read_config, write_config
 from arm_viewer.scene.first_view import FirstView
@@ -59,7 +59,7 @@ class ConfigPanel:
         if not self._linked_for.empty():
             self._link(self._linked_for.get())
         if not self._refused.empty():
-            self._say(self._refused.get())
+            say(self._remark, self._refused.get())
         if not self._opened.empty():
             self._show(*self._opened.get(), snapshot)
 
@@ -89,8 +89,7 @@ class ConfigPanel:
             # viser's client reads these words of its address.
             address = f"?initialCameraPosition={_words(view.position)}"
             address += f"&initialCameraLookAt={_words(view.target)}"
-            self._remark.content = f'<small><a href="{address}">the page with this view</a></small>'
-            self._remark.visible = True
+            fill(self._remark, f'<small><a href="{address}">the page with this view</a></small>')
 
     def _show(self, config: PageConfig, client_ids: tuple[int, ...], snapshot: Snapshot) -> None:
         for key, switch in self._robots.switches.items():
@@ -100,11 +99,7 @@ class ConfigPanel:
         remark = config.remark
         if config.fixed_frame in snapshot.transforms:
             remark += f" The page draws in the root of /tf, not in {config.fixed_frame}."
-        self._say(remark.strip())
-
-    def _say(self, remark: str) -> None:
-        self._remark.content = note(remark, PROBLEM_COLOUR)
-        self._remark.visible = bool(remark)
+        say(self._remark, remark.strip())
 
 
 def _words(numbers: Iterable[float]) -> str:

@@ -4,7 +4,7 @@ from html import escape
 
 from viser import GuiApi
 
-from arm_viewer.panels.panel import PROBLEM_COLOUR, in_order, note
+from arm_viewer.panels.panel import in_order, note, say, show
 from arm_viewer.requests import Configure, Request, Send, SwitchControllers
 from arm_viewer.snapshot import ListedController, Snapshot
 
@@ -29,16 +29,14 @@ class ControllerPanel:
         with self._place:
             self._no_manager = gui.add_html(note("There is no controller manager."))
             self._refusal = gui.add_html("", visible=False)
-        self._shown_refusal = ""
 
     def update(self, snapshot: Snapshot) -> None:
         """Show the controllers that the managers list."""
-        self._show_refusal(snapshot.refusal)
+        say(self._refusal, snapshot.refusal)
         by_manager: dict[str, list[ListedController]] = {}
         for controller in snapshot.controllers:
             by_manager.setdefault(controller.manager, []).append(controller)
-        if bool(by_manager) == self._no_manager.visible:
-            self._no_manager.visible = not by_manager
+        show(self._no_manager, not by_manager)
         for name in self._managers.keys() - by_manager.keys():
             self._managers.pop(name).remove()
         for name, controllers in by_manager.items():
@@ -46,12 +44,6 @@ class ControllerPanel:
                 with self._place:
                     self._managers[name] = _Manager(self._gui, self._send, name)
             self._managers[name].update(controllers)
-
-    def _show_refusal(self, refusal: str) -> None:
-        if refusal != self._shown_refusal:
-            self._shown_refusal = refusal
-            self._refusal.content = note(refusal, PROBLEM_COLOUR)
-            self._refusal.visible = bool(refusal)
 
 
 class _Manager:

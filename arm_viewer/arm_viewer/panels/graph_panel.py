@@ -3,6 +3,7 @@
 from viser import GuiApi
 
 from arm_node.drawing import NodeTopics, node_graph, to_svg
+from arm_viewer.panels.panel import show
 from arm_viewer.snapshot import Snapshot
 
 WIDTH, HEIGHT = 600.0, 520.0
@@ -25,8 +26,7 @@ class GraphPanel:
 
     def update(self, snapshot: Snapshot) -> None:
         """Redraw a changed graph while it is visible."""
-        if self._shown.value != self._window.visible:
-            self._window.visible = self._shown.value
+        show(self._window, self._shown.value)
         if self._shown.value and snapshot.nodes != self._drawn:
             self._drawn = snapshot.nodes
             self._picture.content = _picture_html(snapshot.nodes)

@@ -14,7 +14,7 @@ from arm_description.publishers.joint_state_merge import position_range
 from arm_description.urdf.robot import Joint
 from arm_viewer.channel import Browser, Channel, Message
 from arm_viewer.joint_move import joint_drives
-from arm_viewer.panels.panel import in_order, note, show
+from arm_viewer.panels.panel import fill, in_order, note, show
 from arm_viewer.requests import MoveJoints, Send
 from arm_viewer.snapshot import Description, JointReading, Snapshot
 
@@ -137,7 +137,6 @@ class _MimicTable:
         """Create the table in the open container; it is hidden if there are no mimic joints."""
         self._leaders = {j.name: j.mimic.joint for j in joints if j.mimic is not None}
         self._table = gui.add_html("", visible=bool(self._leaders))
-        self._shown = ""
 
     def update(self, readings: Mapping[str, JointReading]) -> None:
         """Show the positions of the mimic joints."""
@@ -147,13 +146,11 @@ class _MimicTable:
             f'<td style="{NUMBER_STYLE}">{_position(readings.get(name))}</td></tr>'
             for name, leader in self._leaders.items()
         )
-        text = (
+        table = (
             '<table style="font-size:0.75rem;margin:0.5em 0.75em;width:calc(100% - 1.5em);'
             f'font-variant-numeric:tabular-nums">{rows}</table>'
         )
-        if text != self._shown:
-            self._shown = text
-            self._table.content = text
+        fill(self._table, table if rows else "")
 
 
 def _position(reading: JointReading | None) -> str:

@@ -9,7 +9,7 @@ from arm_description.transforms import rotation_from_quaternion, rpy_from_rotati
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
 from arm_planning.scene.frames import LinkPoses
-from arm_viewer.panels.panel import PROBLEM_COLOUR, distinct, in_order, note, show
+from arm_viewer.panels.panel import PROBLEM_COLOUR, distinct, in_order, say, show
 from arm_viewer.panels.robot_panel import link_frames
 from arm_viewer.panels.scene_object_panel import SceneObjectPanel
 from arm_viewer.planning import (
@@ -67,7 +67,6 @@ class MotionPanel:
         self._place = gui.add_folder("Planning scene", expand_by_default=False)
         with self._place:
             self._objects = SceneObjectPanel(gui, scene, view.namespace, view.model, send)
-        self._shown: dict[str, str] = {}
 
     def is_for(self, snapshot: Snapshot) -> bool:
         """Return whether its move_group and robot are still there."""
@@ -89,7 +88,7 @@ class MotionPanel:
         for button in (self._plan, self._move):
             _set_disabled(button, is_busy or view.goal is None)
         _set_disabled(self._execute, is_busy or view.plan is None or not view.plan.is_own)
-        self._say("said", *_said(view))
+        say(self._said, *_said(view))
 
     def remove(self) -> None:
         """Remove everything from the page."""
@@ -118,7 +117,8 @@ class MotionPanel:
         )
         self._drag = 0
         self._tip = _TipFields(gui, self._set_tip)
-        self._texts = {place: gui.add_html("", visible=False) for place in ("jog", "goal")}
+        self._jog_said = gui.add_html("", visible=False)
+        self._goal_problem = gui.add_html("", visible=False)
         self._group.on_update(in_order(lambda _: self._choose_group()))
         self._pose.on_update(in_order(lambda event: self._choose_pose(event.client_id)))
 
@@ -138,7 +138,7 @@ class MotionPanel:
         self._move = gui.add_button("Plan & Execute")
         self._execute = gui.add_button("Execute", hint="move along the plan that is shown")
         stop = gui.add_button("Stop", color="red", hint="stop planning, and every planned motion")
-        self._texts["said"] = gui.add_html("", visible=False)
+        self._said = gui.add_html("", visible=False)
         self._plan.on_click(in_order(lambda _: self._send(self._wish(executes=False))))
         self._move.on_click(in_order(lambda _: self._send(self._wish(executes=True))))
         self._execute.on_click(in_order(lambda _: self._send(ExecutePlan(self._namespace))))
@@ -169,7 +169,7 @@ class MotionPanel:
         self, view: PlanningView, origin: RigidTransform, present: Mapping[str, float]
     ) -> None:
         goal = view.goal
-        self._say("goal", goal.sentence if goal else "", PROBLEM_COLOUR)
+        say(self._goal_problem, goal.sentence if goal else "")
         if goal is None or not self._goal_shown.value:
             self._ghost.hide()
         else:
@@ -204,12 +204,12 @@ class MotionPanel:
     def _show_jog(self, jog: JogView | None) -> bool:
         """Say what the jog does; return whether the robot follows the handle."""
         if jog is None or not self._jogs.visible or not self._jogs.value:
-            self._say("jog", "", "inherit")
+            say(self._jog_said, "")
             return False
         if jog.group != self._group.value:
-            self._say("jog", f"servo_node jogs the group '{jog.group}'.", PROBLEM_COLOUR)
+            say(self._jog_said, f"servo_node jogs the group '{jog.group}'.")
             return False
-        self._say("jog", jog.said, PROBLEM_COLOUR if jog.is_stopped else "inherit")
+        say(self._jog_said, jog.said, PROBLEM_COLOUR if jog.is_stopped else "inherit")
         return True
 
     def _jog(self, group: str, origin: RigidTransform) -> None:
@@ -222,13 +222,6 @@ class MotionPanel:
             self._drag = held.drag
             self._send(SetGoal(self._namespace, group, {}))
         self._send(JogTip(self._namespace, origin.inverse().then(held.pose), held.drag))
-
-    def _say(self, place: str, sentence: str, colour: str) -> None:
-        content = note(sentence, colour)
-        if self._shown.get(place) != content:
-            self._shown[place] = content
-            self._texts[place].content = content
-            self._texts[place].visible = bool(sentence)
 
 
 def _said(view: PlanningView) -> tuple[str, str]:
@@ -286,8 +279,7 @@ class _TipFields:
             self._take(read_pose(self._position.value, self._rpy.value))
         except ValueError as error:
             problem = str(error)
-        self._problem.content = note(problem, PROBLEM_COLOUR)
-        self._problem.visible = bool(problem)
+        say(self._problem, problem)
 
 
 def _numbers_text(numbers: tuple[float, ...]) -> str:

@@ -3,11 +3,11 @@
 import time
 from html import escape
 
-from viser import GuiApi, GuiHtmlHandle, SceneApi
+from viser import GuiApi, SceneApi
 
 from arm_description.urdf.joint_type import JointType
 from arm_description.urdf.robot import Joint
-from arm_viewer.panels.panel import distinct, in_order, note
+from arm_viewer.panels.panel import distinct, fill, in_order, note, say
 from arm_viewer.panels.robot_panel import link_frames
 from arm_viewer.scene.frames import Frames, node_name
 from arm_viewer.scene.reach import ReachCloud
@@ -127,7 +127,7 @@ class OverlayPanel:
             if found is not None:
                 at = " ".join(f"{value:.3f}" for value in found[1])
                 lines.append(f"{shown.robot.name or topic}: {found[0]:.3f} kg at {at} m")
-        _set(self._masses, note("\n".join(lines) or NO_MASS), self._centre.value)
+        say(self._masses, ("\n".join(lines) or NO_MASS) if self._centre.value else "", "inherit")
 
     def _show_loads(self, snapshot: Snapshot) -> None:
         rows: list[str] = []
@@ -141,7 +141,7 @@ class OverlayPanel:
                 for joint in shown.robot.movable_joints
                 if joint.name in loads
             ]
-        _set(self._loads, "".join(rows) or note(NO_LOADS), self._efforts.value)
+        fill(self._loads, ("".join(rows) or note(NO_LOADS)) if self._efforts.value else "")
 
     def _clear(self) -> None:
         self._is_cleared = True
@@ -157,10 +157,3 @@ def load_row(joint: Joint, load: float, effort: float) -> str:
         f'<span style="flex:1">{escape(joint.name)}</span>'
         f"<span>{effort:.3f} {unit} ({abs(load):.0%})</span></div>"
     )
-
-
-def _set(element: GuiHtmlHandle, content: str, shown: bool) -> None:
-    if shown and element.content != content:
-        element.content = content
-    if element.visible != shown:
-        element.visible = shown

@@ -4,7 +4,7 @@ from collections.abc import Callable, Coroutine, Iterable
 from html import escape
 from typing import Any, Protocol
 
-from viser import GuiApi
+from viser import GuiApi, GuiHtmlHandle
 
 from arm_viewer.snapshot import Snapshot
 
@@ -53,6 +53,18 @@ def show(element: Hideable, shown: bool) -> None:
     """Show or hide an element; viser's setter takes its time even if nothing changes."""
     if element.visible != shown:
         element.visible = shown
+
+
+def fill(element: GuiHtmlHandle, html: str) -> None:
+    """Show this in an element; the element is hidden while there is nothing to show."""
+    if html and element.content != html:
+        element.content = html
+    show(element, bool(html))
+
+
+def say(element: GuiHtmlHandle, sentence: str, colour: str = PROBLEM_COLOUR) -> None:
+    """Show a sentence in an element; the element is hidden while there is none."""
+    fill(element, sentence and note(sentence, colour))
 
 
 class Panel(Protocol):

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from viser import GuiApi, GuiTabHandle, SceneApi
 
-from arm_viewer.panels.panel import note
+from arm_viewer.panels.panel import note, show
 from arm_viewer.requests import Send
 from arm_viewer.scene.frames import Frames
 from arm_viewer.snapshot import Snapshot
@@ -47,8 +47,8 @@ class PlanningPanel:
                 self._panels[namespace] = self._panel(snapshot, namespace)
         for panel in self._panels.values():
             panel.update(snapshot)
-        if self._tab is not None and self._gone.visible != (not self._panels):
-            self._gone.visible = not self._panels
+        if self._tab is not None:
+            show(self._gone, not self._panels)
 
     def _panel(self, snapshot: Snapshot, namespace: str) -> "MotionPanel":
         # Imported with the first move_group, because most pages have none.

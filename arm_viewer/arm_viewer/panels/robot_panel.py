@@ -8,7 +8,7 @@ from viser import GuiApi, GuiCheckboxHandle, SceneApi
 
 from arm_description.urdf.robot import Robot
 from arm_node.names import listing
-from arm_viewer.panels.panel import PROBLEM_COLOUR, in_order, note, show
+from arm_viewer.panels.panel import in_order, say
 from arm_viewer.requests import Send, ShowContacts
 from arm_viewer.scene.cameras import Cameras
 from arm_viewer.scene.contact_lines import ContactLines
@@ -79,7 +79,6 @@ class RobotPanel:
         self._is_watched = is_watched
         self._contacts = ContactLines(scene, frames)
         self._wants_contacts = False
-        self._told = ""
         self._scene = scene
         self._poses = poses
         self._view = view
@@ -110,7 +109,6 @@ class RobotPanel:
             self._strongest = gui.add_html("", visible=False)
             fit = gui.add_button("Fit view", color="gray", hint="all robots and nearby objects")
         fit.on_click(in_order(lambda event: self._fit_for.add(event.client_id or 0)))
-        self._shown_problem = ""
         self._problem = gui.add_html("", visible=False)
 
     @property
@@ -142,7 +140,7 @@ class RobotPanel:
             drawn = layers if _is_placed(snapshot, shown) else set[str]()
             shown.model.show(drawn, transparent=inside, grey=grey)
         frames = {*transforms, *(step.parent for step in transforms.values())}
-        self._show_problem(_problem(snapshot, self._robots.values(), frames))
+        say(self._problem, _problem(snapshot, self._robots.values(), frames))
         self._update_view(snapshot)
 
     def _show_contacts(self, snapshot: Snapshot) -> None:
@@ -155,11 +153,7 @@ class RobotPanel:
         contacts = snapshot.contacts if is_shown else None
         self._contacts.show(contacts)
         lines = UNKNOWN_CONTACTS if contacts is None else "\n".join(contacts.strongest)
-        text = lines or NO_CONTACT
-        if is_shown and text != self._told:
-            self._told = text
-            self._strongest.content = note(text)
-        show(self._strongest, is_shown)
+        say(self._strongest, (lines or NO_CONTACT) if is_shown else "", "inherit")
 
     def _update_view(self, snapshot: Snapshot) -> None:
         """Fit the view to the present contents."""
@@ -216,12 +210,6 @@ class RobotPanel:
             model = RobotModel(self._scene, self._frames, node_name(topic), robot, places)
             since_s = shown.since_s if shown is not None else snapshot.made_s
             self._robots[topic] = _Shown(description, places, model, since_s)
-
-    def _show_problem(self, problem: str) -> None:
-        if self._shown_problem != problem:
-            self._shown_problem = problem
-            self._problem.content = note(problem, PROBLEM_COLOUR)
-            self._problem.visible = bool(problem)
 
 
 def link_frames(robot: Robot, namespace: str, frames: Container[str]) -> dict[str, str]:

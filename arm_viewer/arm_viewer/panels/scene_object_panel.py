@@ -10,7 +10,7 @@ from arm_planning.robot.model import PlanningModel
 from arm_planning.scene.frames import LinkPoses
 from arm_planning.scene.objects import CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
-from arm_viewer.panels.panel import PROBLEM_COLOUR, in_order, note
+from arm_viewer.panels.panel import in_order, note, say
 from arm_viewer.planning import PlanningView
 from arm_viewer.planning_requests import AddObject, RemoveObject
 from arm_viewer.requests import Send
@@ -34,7 +34,6 @@ class SceneObjectPanel:
         self._send = send
         self._objects = PlanningObjects(scene, f"{namespace}/objects")
         self._wrong = ""
-        self._shown: tuple[str, str] = ("", "")
         self._is_shown = gui.add_checkbox(
             "Show objects", True, hint="green: in the world; purple: on the robot"
         )
@@ -57,12 +56,8 @@ class SceneObjectPanel:
         names = options(view.scene.objects if view.scene is not None else ())
         if self._chosen.options != names:
             self._chosen.options = names
-        shown = (described(view.scene), self._wrong or view.scene_problem)
-        if shown != self._shown:
-            self._shown = shown
-            self._list.content = note(shown[0])
-            self._problem.content = note(shown[1], PROBLEM_COLOUR)
-            self._problem.visible = bool(shown[1])
+        say(self._list, described(view.scene), "inherit")
+        say(self._problem, self._wrong or view.scene_problem)
 
     def remove(self) -> None:
         """Remove the objects from the 3D view; the elements go with their container."""

@@ -8,6 +8,7 @@ import numpy as np
 from viser import GuiApi, GuiEvent, Icon
 
 from arm_viewer.page_look import BACKGROUND
+from arm_viewer.panels.panel import fill
 from arm_viewer.snapshot import Snapshot
 
 SILENT_S = 2.0
@@ -50,17 +51,13 @@ class StatusPanel:
 
     def build(self, gui: GuiApi) -> None:
         """Create the banner and the button."""
-        self._shown = ""
         self._banner = gui.add_html("", visible=False)
         gui.add_button("Screenshot", icon=Icon.CAMERA, color="gray").on_click(_take_screenshot)
 
     def update(self, snapshot: Snapshot) -> None:
         """Show the present problem."""
         message = status_message(snapshot)
-        if message != self._shown:
-            self._shown = message
-            self._banner.content = BANNER.format(text=html.escape(message))
-            self._banner.visible = bool(message)
+        fill(self._banner, message and BANNER.format(text=html.escape(message)))
 
 
 def _take_screenshot(event: GuiEvent[Any]) -> None:

@@ -4,12 +4,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from html import escape
 
-from viser import GuiApi, GuiHtmlHandle, SceneApi
+from viser import GuiApi, SceneApi
 
 from arm_node.rigid_transform import RigidTransform, Vector
 from arm_viewer.channel import Browser, Channel, Message
 from arm_viewer.panels.file_drop import FileDrop
-from arm_viewer.panels.panel import PROBLEM_COLOUR, distinct, in_order, note, show
+from arm_viewer.panels.panel import PROBLEM_COLOUR, distinct, fill, in_order, note, say, show
 from arm_viewer.requests import Send
 from arm_viewer.scene.drag_handle import DragHandle
 from arm_viewer.snapshot import Snapshot
@@ -100,8 +100,8 @@ class WorldPanel:
         """Show what there is, and pass on where the handle is dragged."""
         self._drop.forget_the_gone()
         view = snapshot.world
-        self._set(self._absent, note(REPLAYED if snapshot.replay else NO_SIMULATION))
-        show(self._absent, view is None)
+        absent = REPLAYED if snapshot.replay else NO_SIMULATION
+        say(self._absent, absent if view is None else "", "inherit")
         for place in self._places:
             show(place, view is not None)
         if view is not None and view.answer.number != self._view.answer.number:
@@ -112,7 +112,7 @@ class WorldPanel:
         if chosen != self._followed:
             self._followed = chosen
             self._send(LookAtThing(chosen))
-        self._set(self._list, listed(self._view, chosen))
+        fill(self._list, listed(self._view, chosen))
         show(self._gravities, self._view.gravity is not None)
         self._gravity.show(self._view.gravity)
         worlds = distinct(self._view.worlds) or NO_WORLDS
@@ -125,8 +125,7 @@ class WorldPanel:
             self._handle.hide()
         answer = self._view.answer
         text, is_done = (self._wrong, False) if self._wrong else (answer.text, answer.is_done)
-        self._set(self._said, note(text, "inherit" if is_done else PROBLEM_COLOUR))
-        show(self._said, bool(text))
+        say(self._said, text, "inherit" if is_done else PROBLEM_COLOUR)
 
     def choose(self, thing: str) -> None:
         """Choose a thing, if there is one of this name; any thread."""
@@ -147,7 +146,7 @@ class WorldPanel:
         delete.on_click(in_order(lambda _: self._try(lambda: RemoveThing(self._chosen))))
 
     def _show_chosen(self, name: str, thing: Thing, properties: ThingProperties) -> None:
-        self._set(self._where, note(described(name, thing, properties)))
+        say(self._where, described(name, thing, properties), "inherit")
         self._properties.show(properties)
         show(self._push_by, thing.can_move)
         show(self._push, thing.can_move)
@@ -160,10 +159,6 @@ class WorldPanel:
         if not is_dragged:
             self._held = None
         self._handle.show(thing.pose)
-
-    def _set(self, element: GuiHtmlHandle, content: str) -> None:
-        if element.content != content:
-            element.content = content
 
     def _take_choice(self, message: Message, browser: Browser) -> None:
         name = message.text("name")
