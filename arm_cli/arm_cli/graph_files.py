@@ -9,12 +9,7 @@ from arm_node.drawing import Digraph, Shape, to_svg
 
 
 def to_dot(graph: Digraph, downward: bool = False) -> str:
-    """Return the graph in DOT.
-
-    Args:
-        graph: the graph.
-        downward: whether arrows point down instead of to the right.
-    """
+    """Return the graph in DOT; arrows point to the right, or downward."""
     lines = ["digraph G {", f"  rankdir={'TB' if downward else 'LR'};"]
     for vertex in graph.vertices:
         attributes = f"label={_quoted(vertex.label)}, shape={vertex.shape.value}"
@@ -60,11 +55,6 @@ def _escaped(text: str) -> str:
 
 def write_picture(graph: Digraph, stem: Path, downward: bool = False) -> Path:
     """Write STEM.gv, and STEM.pdf or STEM.svg; return the picture's path.
-
-    Args:
-        graph: the graph to draw.
-        stem: the path without its suffix.
-        downward: whether arrows point down instead of to the right.
 
     Raises:
         CommandUsageError: the folder cannot be written to.

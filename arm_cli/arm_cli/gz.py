@@ -48,13 +48,7 @@ def time_of(seconds: float) -> Fields:
 
 
 def pose_of(name: str, number: int, pose: Any) -> Fields:
-    """Return the fields of a gz.msgs.Pose.
-
-    Args:
-        name: the name of the entity.
-        number: the id of the entity.
-        pose: its pose, a geometry_msgs/msg/Pose.
-    """
+    """Return the fields of a gz.msgs.Pose of an entity, from its geometry_msgs/msg/Pose."""
     p, q = pose.position, pose.orientation
     return {
         "name": name,

@@ -182,12 +182,7 @@ class Channel:
         broadcast(self._connections, text)
 
     def send_bytes(self, kind: int, payload: bytes) -> None:
-        """Send a binary frame to every browser that has nearly caught up; the others miss it.
-
-        Args:
-            kind: 0 to 255; names the handler in the browser.
-            payload: the content.
-        """
+        """Send a binary frame of a kind, 0 to 255, to every browser; those that lag miss it."""
         ready = [c for c in self._connections if _unsent_bytes(c) < MAX_UNSENT_BYTES]
         if ready:
             broadcast(ready, bytes((kind,)) + payload)
@@ -198,12 +193,7 @@ class Channel:
         return bool(self._connections)
 
     async def serve(self, connection: ServerConnection, *, may_change: bool = True) -> None:
-        """Serve a browser until it disconnects.
-
-        Args:
-            connection: to the browser.
-            may_change: whether it may do more than look.
-        """
+        """Serve a browser until it disconnects; unless it `may_change` things, it only looks."""
         browser = Browser(connection)
         # Without waiting in between, so that no message comes before what it replaces.
         for text in self._kept.values():

@@ -60,12 +60,7 @@ def page_running(
 ) -> Iterator[None]:
     """Build the page, and keep it up to date while the context lasts.
 
-    Args:
-        server: serves the page.
-        latest: returns the newest snapshot.
-        send: takes the user's requests.
-        config: what the page shows first.
-        recordings: what plays recordings and what makes them; None for a page without a timeline.
+    `config` is what it shows first; without `recordings` it has no timeline.
     """
     loop = server.get_event_loop()
     panels = asyncio.run_coroutine_threadsafe(

@@ -72,11 +72,7 @@ class PlannedPath:
         return np.array([LinkPoses(self.model, state)[tip].position for state in states])
 
     def summary(self, planning_time_s: float = 0.0) -> str:
-        """Return time and length in a sentence.
-
-        Args:
-            planning_time_s: how long planning took; 0 if that is not known.
-        """
+        """Return time and length in a sentence; a planning time of 0 is not known."""
         trail = self.trail()
         length_m = float(np.linalg.norm(np.diff(trail, axis=0), axis=1).sum())
         said = f"{self.duration_s:.2f} s, {self.points} points; {self.tip()} moves {length_m:.3f} m"
@@ -100,12 +96,9 @@ def _equal(first: TimedTrajectory, second: TimedTrajectory) -> bool:
 def planned_path(
     model: PlanningModel, start: JointPositions, motions: Sequence[TimedTrajectory]
 ) -> PlannedPath | None:
-    """Return motions as a path; None if none of them has a point, or one is for another robot.
+    """Return motions from a start as a path.
 
-    Args:
-        model: the robot.
-        start: positions of joints before the motions.
-        motions: the motions.
+    Return None if none of them has a point, or one is for another robot.
     """
     moving = tuple(motion for motion in motions if len(motion.times_s))
     known = {joint.name for joint in model.robot.joints}

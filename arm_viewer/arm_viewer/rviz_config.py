@@ -51,11 +51,7 @@ class PageConfig:
 
 
 def read_config(content: bytes, name: str) -> PageConfig:
-    """Read an RViz configuration.
-
-    Args:
-        content: the file.
-        name: its name, for errors.
+    """Read an RViz configuration; errors name it.
 
     Raises:
         ConfigError: it is not an RViz configuration.

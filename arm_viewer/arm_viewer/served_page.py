@@ -50,12 +50,7 @@ _HEAD_END, _BODY = "</head>", "<body>"
 
 @cache
 def served_page(html: str, is_read_only: bool = False) -> str:
-    """Return viser's page with the project's additions.
-
-    Args:
-        html: viser's index.html.
-        is_read_only: whether its browser may only look.
-    """
+    """Return viser's index.html with the project's additions; a browser may be let to look only."""
     icon = f'<link rel="icon" href="data:image/svg+xml,{quote(_read_asset("icon.svg"))}" />'
     scripts = "".join(
         f"<script>{_read_asset(name)}</script>"

@@ -34,12 +34,7 @@ class RefusalListener:
     """Listens to /rosout from the sending of a goal on."""
 
     def __init__(self, session: CommandSession, action_name: str) -> None:
-        """Subscribe.
-
-        Args:
-            session: the command's node.
-            action_name: full name of the action.
-        """
+        """Subscribe for the action of this full name."""
         self._session = session
         self._action_name = action_name
         self._logged: list[Log] = []

@@ -53,12 +53,7 @@ class ReadAhead:
     """
 
     def __init__(self, messages: Iterator[BagMessage], size: int) -> None:
-        """Prepare the thread.
-
-        Args:
-            messages: the iterator, which only the thread uses.
-            size: the number of messages to read ahead.
-        """
+        """Prepare the thread, which alone uses the iterator, and reads so many messages ahead."""
         self._messages = messages
         self._queue: queue.Queue[BagMessage | BagError | None] = queue.Queue(size)
         self._ended = threading.Event()
@@ -141,12 +136,7 @@ class BagPlayer:
     """Plays the messages of a bag."""
 
     def __init__(self, session: CommandSession, clock_rate_hz: float | None) -> None:
-        """Prepare.
-
-        Args:
-            session: its node publishes the messages.
-            clock_rate_hz: the rate of /clock, or None not to publish it.
-        """
+        """Prepare; without a rate, /clock is not published."""
         self._session = session
         self._publishers: dict[str, Publisher] = {}
         self._ticker = None if clock_rate_hz is None else _ClockTicker(session, clock_rate_hz)
@@ -160,12 +150,8 @@ class BagPlayer:
     ) -> list[str]:
         """Create the publishers, and wait until existing subscriptions have matched them.
 
-        Topics that cannot be played are reported and left out.
-
-        Args:
-            topics: the topics to play.
-            names: other names to publish topics under, by their names in the bag.
-            overrides: other QoS for topics than recorded, by their names in the bag.
+        Topics that cannot be played are reported and left out. Other names and other QoS than
+        recorded are by the names in the bag.
 
         Returns:
             The names of the topics that can be played.
@@ -221,13 +207,9 @@ class BagPlayer:
         *,
         to_the_end: bool,
     ) -> None:
-        """Publish messages at their times, up to a time of the bag.
+        """Publish messages, in the order of their time, at their times, up to a time of the bag.
 
-        Args:
-            messages: the messages in the order of their time.
-            schedule: tells when they are due.
-            end_ns: the bag's time after which no message is published.
-            to_the_end: whether to wait for that time after the last message.
+        With `to_the_end` it waits for that time after the last message.
 
         Raises:
             StoppedError: a signal arrived.

@@ -46,11 +46,7 @@ class LossCounter:
     """
 
     def __init__(self, count_publishers: Callable[[], int]) -> None:
-        """Start counting.
-
-        Args:
-            count_publishers: returns the present number of publishers; called at each gap.
-        """
+        """Start counting; at each gap the present number of publishers is asked for."""
         self._count_publishers = count_publishers
         self._latest: list[int] = []
 
@@ -82,12 +78,7 @@ class Recording:
     """Records into a bag. Call its methods from one thread; it writes in a thread of its own."""
 
     def __init__(self, writer: BagWriter, max_cache_bytes: int) -> None:
-        """Start the writing thread.
-
-        Args:
-            writer: the writer, which the recording now owns.
-            max_cache_bytes: the size of the cache; 0 means no cache.
-        """
+        """Start the writing thread; the recording now owns the writer. 0 bytes mean no cache."""
         self.dropped: Counter[str] = Counter()
         """The number of messages dropped because the cache was full, by topic."""
         self._writer = writer
@@ -193,15 +184,9 @@ class BagRecorder:
         use_sim_time: bool,
         overrides: Mapping[str, OfferedQos] | None = None,
     ) -> None:
-        """Prepare.
+        """Prepare; `overrides` has QoS of subscriptions that replaces that of the publishers.
 
-        Args:
-            session: its node subscribes to the topics.
-            recording: receives the messages.
-            selection: the topics to record.
-            poll_period_s: how often to look for new topics.
-            use_sim_time: whether messages get the time of the session's clock.
-            overrides: QoS of subscriptions that replaces the publishers' QoS.
+        With `use_sim_time`, messages get the time of the session's clock.
         """
         self.lost: Counter[str] = Counter()
         self._session = session
@@ -221,11 +206,9 @@ class BagRecorder:
         self._drops_reported = 0
 
     def run(self, discover: bool = True, ended: Callable[[], bool] = lambda: False) -> None:
-        """Record until the recording fails or `ended` returns true.
+        """Record until the recording fails or `ended`, asked between two messages, returns true.
 
-        Args:
-            discover: whether to record topics that appear after the graph has settled.
-            ended: returns whether to stop; called between two messages.
+        Without `discover`, topics that appear after the graph has settled are left out.
 
         Raises:
             StoppedError: a signal arrived.

@@ -377,11 +377,7 @@ class McapFileReader:
         return {}
 
     def messages(self, topics: Collection[str], start_ns: int) -> Iterator[BagMessage]:
-        """Yield the messages of some topics in the order of their time.
-
-        Args:
-            topics: the names of the topics.
-            start_ns: the time of the earliest message.
+        """Yield the messages of some topics from a time on, in the order of their time.
 
         Raises:
             BagError: the file is damaged.

@@ -123,11 +123,7 @@ class BagMetadata:
 
 
 def read_metadata(text: str, where: str) -> BagMetadata:
-    """Return the metadata in a metadata.yaml of any version up to 9.
-
-    Args:
-        text: the content of the file.
-        where: the path of the file, for error messages.
+    """Return the metadata in a metadata.yaml of any version up to 9; errors say `where` it is.
 
     Raises:
         BagError: the text is not the metadata of a bag.

@@ -70,11 +70,7 @@ class BagReader:
     """
 
     def __init__(self, path: Path, by_metadata: bool = True) -> None:
-        """Open all files.
-
-        Args:
-            path: the path of the folder or file.
-            by_metadata: whether to open the files that metadata.yaml lists, or all MCAP files.
+        """Open the files that metadata.yaml lists, or all MCAP files.
 
         Raises:
             BagError: there is no bag, or it cannot be read; the message says why.
@@ -148,11 +144,7 @@ class BagReader:
                 )
 
     def messages(self, topics: Collection[str], start_ns: int = 0) -> Iterator[BagMessage]:
-        """Return the messages of some topics in the order of their time.
-
-        Args:
-            topics: the names of the topics.
-            start_ns: the time of the earliest message.
+        """Return the messages of some topics from a time on, in the order of their time.
 
         Raises:
             BagError: the bag is damaged, or `check_topics` refuses a topic.

@@ -43,12 +43,7 @@ class McapFileWriter:
     """Writes one file; not thread-safe. Every method but `abandon` may raise an OSError."""
 
     def __init__(self, path: Path, compression: str) -> None:
-        """Create the file.
-
-        Args:
-            path: the path of the file, which must not exist.
-            compression: the compression of its chunks, one of COMPRESSIONS.
-        """
+        """Create the file, which must not exist; one of COMPRESSIONS is for its chunks."""
         self._path = path
         self._stream = path.open("xb")
         self._writer = Writer(

@@ -27,13 +27,7 @@ CHANNELS = {"rgb8": (0, 1, 2), "bgr8": (2, 1, 0), "rgba8": (0, 1, 2), "bgra8": (
 
 
 class EpisodeReader:
-    """Reads one bag.
-
-    Args:
-        reader: the bag.
-        chosen: its topics.
-        wanted: the user's options.
-    """
+    """Reads the chosen topics of one bag."""
 
     def __init__(self, reader: BagReader, chosen: ChosenTopics, wanted: DatasetOptions) -> None:
         self._reader, self._chosen, self._wanted = reader, chosen, wanted

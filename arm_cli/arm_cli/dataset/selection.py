@@ -89,11 +89,7 @@ def dataset_options(options: argparse.Namespace) -> DatasetOptions:
 
 
 def choose_topics(wanted: DatasetOptions, topics: "Mapping[BagTopic, int]") -> ChosenTopics:
-    """Choose topics.
-
-    Args:
-        wanted: the user's options.
-        topics: the topics of the bag, with their numbers of messages.
+    """Choose among a bag's topics, each with its number of messages.
 
     Raises:
         BagError: a topic is missing, or it is not clear which one is meant.

@@ -164,11 +164,7 @@ def check_rclpy(environ: Mapping[str, str]) -> Diagnosis:
 
 
 def check_wheels(path: Sequence[str] | None = None) -> Diagnosis:
-    """Check that the installed distributions meet the suite's requirements.
-
-    Args:
-        path: the folders to search for distributions; default this Python's.
-    """
+    """Check that distributions, by default this Python's, meet the suite's requirements."""
     name = "wheels"
     folders = list(sys.path) if path is None else list(path)
     suite = _find(SUITE, folders)

@@ -84,13 +84,7 @@ def _middleware_fault(environ: Mapping[str, str]) -> Diagnosis | None:
 def check_ports(
     environ: Mapping[str, str], here: str = LOOPBACK, group: str = MULTICAST_GROUP
 ) -> Diagnosis:
-    """Send datagrams to this process as Fast DDS does, over loopback and by multicast.
-
-    Args:
-        environ: the environment, which sets the domain and the discovery range.
-        here: the loopback address.
-        group: the multicast address of announcements.
-    """
+    """Send datagrams to this process as Fast DDS does, over loopback and by multicast."""
     if not _arrives(here, 0):
         return Diagnosis.error(
             "ports",
@@ -211,12 +205,7 @@ class _Listener:
 
 
 def check_listening(environ: Mapping[str, str], proc: Path = PROC) -> Diagnosis:
-    """List this user's ROS programs that listen on loopback only, and those that listen elsewhere.
-
-    Args:
-        environ: the environment, which sets the domain.
-        proc: the mount point of proc(5).
-    """
+    """List this user's ROS programs that listen on loopback only, and those that do not."""
     listeners = find_listeners(environ, proc)
     if not listeners:
         return Diagnosis.ok("listening", "no ROS program of yours listens in this domain")

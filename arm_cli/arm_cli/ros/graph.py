@@ -102,11 +102,7 @@ class Graph:
         self._own = absolute_name(session.node.get_name())
 
     def settle(self, times: SettleTimes = DEFAULT_TIMES) -> None:
-        """Wait until the graph is complete, as far as that can be known.
-
-        Args:
-            times: how long to wait; the default suffices for a correct list.
-        """
+        """Wait until the graph is complete, as far as that can be known; a list is correct then."""
         settling = _Settling(self, self._session.started_s, times=times)
         self._session.wait_until(settling.done)
 
@@ -261,14 +257,7 @@ class Graph:
         is_ready: Callable[[], bool],
         timeout_s: float | None,
     ) -> None:
-        """Wait until a service or an action has a server.
-
-        Args:
-            what: "service" or "action".
-            name: its absolute name.
-            type_name: the type that the server must have.
-            is_ready: tells whether the client sees a server.
-            timeout_s: how long to wait at most; None waits for ever.
+        """Wait until a "service" or an "action" has a server, for ever without a timeout.
 
         Raises:
             CommandUsageError: its servers have another type.

@@ -85,11 +85,7 @@ class MoveGroupClient:
         return {joint: known[joint] for joint in joints}
 
     def move(self, goal: MoveGroup.Goal, timeout_s: float | None) -> MoveGroup.Result:
-        """Send a goal and return its result; Ctrl-C cancels it.
-
-        Args:
-            goal: what to do.
-            timeout_s: how long to wait for the result; None for as long as it takes.
+        """Send a goal and return its result, however late without a timeout; Ctrl-C cancels it.
 
         Raises:
             UnansweredError: no move_group runs, or it does not answer, or ends first.

@@ -79,12 +79,7 @@ def offered_qos(publisher: TopicEndpointInfo) -> OfferedQos:
 def recording_profile(
     publishers: Sequence[TopicEndpointInfo], override: OfferedQos | None = None
 ) -> QoSProfile:
-    """Return the strictest profile of a subscription that matches all publishers.
-
-    Args:
-        publishers: the publishers of the topic.
-        override: the user's QoS, which replaces the matching one.
-    """
+    """Return the strictest profile of a subscription that matches all publishers, or the user's."""
     profile = matching_profile(publishers) if override is None else playing_profile([override])
     profile.depth = RECORDING_DEPTH
     return profile

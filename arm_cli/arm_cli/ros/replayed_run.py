@@ -42,11 +42,8 @@ CLOCK, TF, MARKERS, CONTACTS = "/clock", "/tf", f"/{TOPIC}", f"/{CONTACT_TOPIC}"
 class _ReplayedMessages:
     """Makes messages of a replay's present state, each by its topic; the replay's thread.
 
-    Each link is a child of the frame `world`, where the replay has it; nothing is computed from
-    the joint states.
-
-    Args:
-        replay: the replay.
+    Each link is a child of the frame `world`, where the replay has it; nothing is computed from the
+    joint states.
     """
 
     def __init__(self, replay: Replay) -> None:
@@ -162,12 +159,9 @@ HOLD_PERIOD_S = 0.1
 
 
 class RunPlayer:
-    """Shows a replay to ROS tools, at a pace. Use it in the session's thread.
+    """Shows a replay to ROS tools, from before its first period. Use it in the session's thread.
 
-    Args:
-        session: its node publishes.
-        replay: the replay, before its first period.
-        speed: simulated seconds for each second of wall time.
+    The speed is in simulated seconds for each second of wall time.
     """
 
     def __init__(self, session: "CommandSession", replay: Replay, speed: float) -> None:
@@ -249,11 +243,8 @@ class RunBag:
     """Writes a bag whose time is that of the recording: 0 at its beginning, and never back.
 
     Joint states are written after each control period, so that no peak is lost; the rest as often
-    as it is shown, and shapes and contacts only when they have changed.
-
-    Args:
-        folder: of the bag; it must not exist.
-        replay: the replay, before its first period.
+    as it is shown, and shapes and contacts only when they have changed. The folder must not exist,
+    and the replay stands before its first period.
 
     Raises:
         BagError: the bag cannot be made.

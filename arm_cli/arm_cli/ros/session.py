@@ -94,9 +94,6 @@ class CommandSession:
 
         An answer that a server sends earlier is lost, and a request must not be sent twice. A
         server that does not answer the question is sent the request all the same.
-
-        Args:
-            service: fully qualified name.
         """
         from arm_node.testing import DiscoveryCheck
 
@@ -167,12 +164,7 @@ class CommandSession:
         timeout_s: float | None = None,
         waiting_for: Callable[[], str] | None = None,
     ) -> Any:
-        """Return a future's result, or None if it has none before the timeout.
-
-        Args:
-            future: a future that this node's executor completes.
-            timeout_s: None waits forever.
-            waiting_for: returns a notice, printed on stderr after a second; None prints nothing.
+        """Return a future's result, or None if it has none before the timeout; see `wait_until`.
 
         Raises:
             StoppedError: a signal arrived.
@@ -190,12 +182,8 @@ class CommandSession:
     ) -> Any:
         """Return the answer of a server, or None if there is none before the timeout.
 
-        Args:
-            future: a future that this node's executor completes with the answer.
-            server: the name of the service or action, for messages.
-            is_there: returns whether it has a server.
-            timeout_s: None waits as long as there is a server.
-            waiting_for: returns a notice, printed on stderr after a second; None prints nothing.
+        `is_there` returns whether the service or action, which messages call `server`, has a
+        server. See `wait_until` for the rest.
 
         Raises:
             UnansweredError: the server has ended.
@@ -211,11 +199,7 @@ class CommandSession:
 
 @contextmanager
 def open_session(name: str | None = None, use_sim_time: bool = False) -> Iterator[CommandSession]:
-    """Yield a session with a light node that is hidden from lists.
-
-    Args:
-        name: the node's name; by default hidden and unique.
-        use_sim_time: whether the node's clock follows /clock.
+    """Yield a session with a light node; by default its name is unique and hidden from lists.
 
     Raises:
         CommandUsageError: ROS cannot start, for example because its log folder is not writable, or

@@ -48,13 +48,9 @@ class SimulationClient:
         patiently: bool = False,
         **fields: Any,
     ) -> Any:
-        """Call a service of simulation_interfaces; return the answer.
+        """Call a service of a type in simulation_interfaces.srv; return the answer.
 
-        Args:
-            type_: the type, such as "GetEntities".
-            service: the name, such as "get_entities".
-            patiently: whether to wait for the answer as long as the simulation is there.
-            fields: the fields of the request.
+        With `patiently` it waits for the answer as long as the simulation is there.
 
         Raises:
             SimulationRefusedError: the simulation refuses the request.
@@ -103,10 +99,7 @@ class SimulationClient:
     def set_parameter(self, name: str, content: float | str, *, if_there: bool = False) -> None:
         """Set a parameter of the simulation's node.
 
-        Args:
-            name: the parameter.
-            content: its value.
-            if_there: whether to wait only as long as the simulation, found before, is there.
+        With `if_there` it waits only as long as the simulation, found before, is there.
 
         Raises:
             SimulationRefusedError: the simulation refuses the value.
@@ -134,12 +127,10 @@ class SimulationClient:
 
 @contextmanager
 def ask_simulation(namespace: str = "/", *, must_run: bool = False) -> Iterator[SimulationClient]:
-    """Yield a client of the simulation's services.
+    """Yield a client of the simulation's services in a namespace.
 
-    Args:
-        namespace: the namespace of its services.
-        must_run: whether to give up as soon as discovery finds no simulation, instead of waiting
-            for one that is starting.
+    With `must_run` it gives up as soon as discovery finds no simulation, instead of waiting for one
+    that is starting.
 
     Raises:
         NoSuchNameError: no simulation is found.

@@ -20,10 +20,7 @@ def listen(
 ) -> FrameLog:
     """Return the frames received within a duration after the first transform.
 
-    Args:
-        session: receives them.
-        duration_s: how long to listen.
-        timeout_s: how long to wait for the first transform; None waits for ever.
+    Without a timeout it waits for ever for the first one.
 
     Raises:
         UnansweredError: nobody publishes transforms.

@@ -158,12 +158,8 @@ def report_every_second(
 ) -> None:
     """Print the measurement every second until a signal arrives.
 
-    Args:
-        session: the session to wait with.
-        describe: returns the report, or None if there is none yet.
-        silence: returns a notice to print if no message arrives at first.
-        taken: returns the number of messages so far; a second without new messages is not
-            reported. None if the measurement also changes without messages.
+    `silence` returns a notice for when no message arrives at first. A second without new messages,
+    as `taken` counts them, is not reported; without it, the measurement also changes then.
     """
     reported: int | None = None
     session.wait_until(lambda: describe() is not None, silence)

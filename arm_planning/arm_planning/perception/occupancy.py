@@ -23,11 +23,7 @@ RAYS = 500
 
 
 class OccupancyGrid:
-    """Cubes that are occupied more likely than not. One thread.
-
-    Args:
-        resolution_m: their edge.
-    """
+    """Cubes, `resolution_m` wide, that are occupied more likely than not. One thread."""
 
     def __init__(self, resolution_m: float) -> None:
         self.resolution_m = resolution_m

@@ -51,13 +51,9 @@ def offer_service(
 ) -> None:
     """Offer a service; all of this package are made here, so that each of them answers.
 
-    Args:
-        node: gets the service.
-        kind: its type.
-        name: its name.
-        serve: fills the response; an exception of it is logged, and the code becomes FAILURE.
-        group: which callbacks may run beside it; by default those of the node's own group may not.
-        limit: shared by the services that take long.
+    An exception of `serve`, which fills the response, is logged, and the code becomes FAILURE. By
+    default no other callback of the node's own group may run beside it. A limit is shared by the
+    services that take long.
     """
 
     def answer(request: Any, response: Any) -> Any:
@@ -74,12 +70,7 @@ def offer_service(
 
 
 def report_fault(name: str, error: Exception) -> str:
-    """Log the traceback of the exception that is being handled; return a sentence for the client.
-
-    Args:
-        name: of the service or action that has the fault.
-        error: the exception.
-    """
+    """Log the traceback of the exception being handled; return a sentence for the client."""
     LOGGER.exception("%s has a fault", name)
     return f"{name} has a fault, please report it: {type(error).__name__}: {error}"
 

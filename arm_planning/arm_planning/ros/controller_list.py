@@ -33,11 +33,9 @@ class ControllerList:
     """Finds the controllers; without a configuration it asks the controller manager each time."""
 
     def __init__(self, node: Node, configured: Sequence[TrajectoryController]) -> None:
-        """Prepare; other threads must spin the node.
+        """Prepare with those of moveit_controllers.yaml; without any, the manager is asked.
 
-        Args:
-            node: has the client.
-            configured: the controllers of moveit_controllers.yaml; empty to ask the manager.
+        Other threads must spin the node.
         """
         self._configured = configured
         self._client = node.create_client(

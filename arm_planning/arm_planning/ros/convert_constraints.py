@@ -108,13 +108,9 @@ def constraints_of(
 def plan_request(
     message: MotionPlanRequest, seed: int, frames: ConstraintFrames, warn: Warn
 ) -> PlanRequest:
-    """Return a planning request that starts from the scene's state.
+    """Return a planning request that starts from the state of the scene that has these frames.
 
-    Args:
-        message: the request.
-        seed: the seed of its plan.
-        frames: the frames of the scene that it is planned in.
-        warn: takes what is passed over or replaced.
+    `warn` takes what is passed over or replaced.
 
     Raises:
         PlanningError: see `constraints_of`.

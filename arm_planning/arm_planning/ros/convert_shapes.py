@@ -33,14 +33,8 @@ def placed_shapes(
 ) -> tuple[PlacedShape, ...]:
     """Return the shapes of an object; a shape without a pose is at the origin.
 
-    Args:
-        owner: names the object in errors, such as "object 'box1'".
-        primitives: boxes, spheres, cylinders and cones.
-        primitive_poses: their poses; fewer are allowed, more are not.
-        meshes: triangle meshes.
-        mesh_poses: their poses.
-        planes: half spaces.
-        plane_poses: their poses.
+    There may be fewer poses than shapes, but not more. Errors name the owner, such as "object
+    'box1'".
 
     Raises:
         PlanningError: INVALID_OBJECT_NAME: a shape has no size, or there are more poses than

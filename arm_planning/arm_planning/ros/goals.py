@@ -145,12 +145,8 @@ class GoalServer:
     ) -> None:
         """Offer the action; several threads must spin the node.
 
-        Args:
-            node: gets the action.
-            action: its type.
-            name: its name.
-            serve: fills the result and returns the outcome; an exception of it becomes FAILURE.
-            turns: whose turns a goal's message takes.
+        `serve` fills the result and returns the outcome; an exception of it becomes FAILURE.
+        `turns` returns whose turns a goal's message takes.
         """
         self._action = action
         self._name = name

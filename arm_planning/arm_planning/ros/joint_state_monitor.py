@@ -36,13 +36,7 @@ class JointStateMonitor:
     """
 
     def __init__(self, node: Node, model: PlanningModel, *others: Node) -> None:
-        """Subscribe to joint_states.
-
-        Args:
-            node: has the subscription.
-            model: the robot.
-            others: nodes that take simulation time from the stamps of the messages, as `node` does.
-        """
+        """Subscribe to joint_states; `others`, too, take simulation time from their stamps."""
         self._model = model
         self._known = frozenset(model.joints)
         self._lock = threading.Lock()
@@ -90,10 +84,6 @@ class JointStateMonitor:
         """Wait for a state from now, or 50 ms ago; return what is wrong after the timeout.
 
         While simulation time stands still, the last state is the present one.
-
-        Args:
-            timeout_s: how long.
-            interrupted: tells when waiting is to end early.
 
         Returns:
             "", or a sentence: joint states have stopped, or joints are missing.
@@ -154,12 +144,7 @@ class _HeldTime:
     """
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
-        """Do nothing yet.
-
-        Args:
-            node: whose parameter `use_sim_time` counts.
-            polled: makes the subscription.
-        """
+        """Do nothing yet; the node's parameter `use_sim_time` counts."""
         self._node = node
         self._polled = polled
         self._subscription = None

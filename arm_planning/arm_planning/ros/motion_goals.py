@@ -54,9 +54,7 @@ class MotionGoals:
     def serve(self, goal: ServedGoal, plan: Callable[[], Plan]) -> ExecutionOutcome:
         """Plan; then move, and plan again where the goal asks for it and the first plan is no use.
 
-        Args:
-            goal: the goal.
-            plan: makes a plan, fills the result with it, and tells how it went.
+        `plan` makes a plan, fills the result with it, and tells how it went.
         """
         options = goal.request.planning_options
         moves = self.moves(goal.request)

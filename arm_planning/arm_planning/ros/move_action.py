@@ -19,12 +19,7 @@ class MoveActions:
     """Serves move_action and execute_trajectory; one goal at a time moves the robot."""
 
     def __init__(self, node: Node, motions: MotionGoals) -> None:
-        """Offer the actions; several threads must spin the node.
-
-        Args:
-            node: gets the action servers.
-            motions: plans and moves.
-        """
+        """Offer the actions; several threads must spin the node."""
         self._motions = motions
         self.executions = Turns(MOST_EXECUTIONS)
         self._move = GoalServer(node, MoveGroup, "move_action", self._serve_move, motions.turns_of)

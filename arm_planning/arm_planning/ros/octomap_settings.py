@@ -52,10 +52,7 @@ class OctomapSettings:
 
 
 def octomap_settings(given: Mapping[str, Any]) -> OctomapSettings | None:
-    """Return the settings; None if there are no sensors.
-
-    Args:
-        given: the node's parameters by their names.
+    """Return the settings among a node's parameters; None if there are no sensors.
 
     Raises:
         PlanningError: a value cannot be used.

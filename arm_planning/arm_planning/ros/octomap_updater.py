@@ -34,12 +34,7 @@ LOGGER = logging.getLogger("move_group")
 class OctomapUpdater:
     """Keeps the scene's octomap up to date.
 
-    Args:
-        node: has the subscriptions; the work is done on one of its executor's threads.
-        monitor: has the scene.
-        model: the robot.
-        meshes: cuts meshes; of no other thread.
-        settings: the parameters.
+    The work is done on one of the threads of the node's executor; no other thread uses `meshes`.
     """
 
     def __init__(

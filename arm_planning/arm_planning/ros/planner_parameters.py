@@ -35,13 +35,9 @@ class PlannerParameters:
     def change(
         self, planner_id: str, group: str, values: Mapping[str, str], *, replaces: bool
     ) -> None:
-        """Set parameters of a planner.
+        """Set parameters of a planner, named as in a request, for a group, or for all with "".
 
-        Args:
-            planner_id: the planner, as in a request.
-            group: the group; "" for all.
-            values: the values as text.
-            replaces: whether those that are not given have their defaults again.
+        With `replaces`, those that are not given have their defaults again.
 
         Raises:
             PlanningError: a planner or parameter does not exist, or a value is none for it;

@@ -38,14 +38,7 @@ class PlanningServices:
     def __init__(
         self, node: Node, session: PlanningSession, display: PlanDisplay, limit: BusyLimit
     ) -> None:
-        """Offer the services; several threads must spin the node.
-
-        Args:
-            node: gets the services.
-            session: plans in the present scene.
-            display: shows plans.
-            limit: of the services that plan.
-        """
+        """Offer the services, those that plan with a limit; several threads must spin the node."""
         self._session = session
         self._display = display
         group = ReentrantCallbackGroup()

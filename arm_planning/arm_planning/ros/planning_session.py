@@ -76,11 +76,7 @@ class PlanningSession:
     ) -> PlanResponse:
         """Plan in the present scene with changes; it raises nothing for what is not possible.
 
-        Args:
-            request: what to plan.
-            diff: changes of the present scene.
-            from_present: whether the start state is ignored, because the robot moves at once.
-            interrupted: tells when planning is to end early.
+        With `from_present` the start state is ignored, because the robot moves at once.
         """
         if from_present and is_given(request.start_state):
             LOGGER.warning(
@@ -108,10 +104,8 @@ class PlanningSession:
     ) -> tuple[PlanningScene, str]:
         """Return the scene to plan in, the present one with changes, and a remark on it, or "".
 
-        Args:
-            diff: the changes, if any; never a whole scene, whatever it says of itself.
-            from_present: whether the robot stays where it is, because it moves at once.
-            interrupted: tells when waiting for joint states is to end early.
+        The changes are never a whole scene, whatever they say of themselves. With `from_present`
+        the robot stays where it is, because it moves at once.
 
         Raises:
             PlanningError: a change is not possible.
@@ -148,12 +142,8 @@ class PlanningSession:
     ) -> Callable[[float], str]:
         """Return a function of the time since the start, which says what blocks the rest.
 
-        It looks only when the scene has changed since it last looked.
-
-        Args:
-            trajectory: what the robot does.
-            planned_in: the monitor's scene from before the plan, so that changes while it was
-                made count.
+        It looks only when the scene has changed since it last looked. The scene is that from before
+        the plan, so that changes while it was made count.
         """
         seen = planned_in
 

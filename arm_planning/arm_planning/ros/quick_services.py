@@ -16,11 +16,9 @@ class QuickServices(ReentrantCallbackGroup):
 
 
 class QuickExecutor(SingleThreadedExecutor):
-    """Serves such a group, one request after the other; the node belongs to another executor.
+    """Serves such a group, whose services are all made before, one request at a time.
 
-    Args:
-        node: has the services, all made before.
-        group: their group.
+    The node belongs to another executor.
     """
 
     def __init__(self, node: Node, group: QuickServices) -> None:

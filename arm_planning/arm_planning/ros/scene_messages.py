@@ -35,13 +35,7 @@ EVERYTHING = 0xFFFFFFFF
 
 
 def scene_message(model: PlanningModel, scene: PlanningScene, parts: int = 0) -> SceneMessage:
-    """Return a scene as a message.
-
-    Args:
-        model: the robot.
-        scene: the scene.
-        parts: bits of moveit_msgs/PlanningSceneComponents; 0 for everything.
-    """
+    """Return a scene as a message; `parts` are bits of PlanningSceneComponents, 0 for all."""
     wanted = parts or EVERYTHING
     message = SceneMessage(is_diff=False, robot_model_name=model.robot.name)
     if wanted & Parts.SCENE_SETTINGS:

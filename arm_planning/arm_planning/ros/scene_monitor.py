@@ -60,15 +60,7 @@ class SceneMonitor:
         meshes: MeshPieces,
         *others: Node,
     ) -> None:
-        """Listen to the scene's topics, and offer its services.
-
-        Args:
-            node: has the topics and services.
-            model: the robot.
-            scene: the scene at the start.
-            meshes: cuts the meshes of changes.
-            others: nodes that take the robot's time, too.
-        """
+        """Listen to the scene's topics, and offer its services; `others` take its time, too."""
         self._model, self._meshes = model, meshes
         self._scene = scene
         # Reading the scene takes in what has moved in the world, also within a change.
@@ -99,9 +91,7 @@ class SceneMonitor:
     def follow_world(self, node: Node, robot: RigidTransform) -> None:
         """Let the simulation's things be objects of the scene, from now on and as they move.
 
-        Args:
-            node: has the subscription.
-            robot: pose of the robot's root in the simulated world.
+        `robot` is the pose of the robot's root in the simulated world.
         """
         self._world = WorldObjects(node, robot, {link.name for link in self._model.robot.links})
 
@@ -247,13 +237,8 @@ def without_unusable(
 ) -> tuple[PlanningScene, list[PlanningError]]:
     """Return a changed scene in which objects with unusable meshes are as before, and the reasons.
 
-    Collision checks cannot use them, so each plan would fail.
-
-    Args:
-        model: the robot.
-        before: the scene before the change, whose meshes are usable.
-        after: the scene after it.
-        meshes: cuts meshes.
+    Collision checks cannot use them, so each plan would fail. The meshes of the scene before the
+    change are usable.
     """
     known = {id(mesh) for thing in _things(before) for mesh in _meshes(thing)}
     new = [

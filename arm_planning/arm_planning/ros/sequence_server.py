@@ -82,11 +82,8 @@ class SequenceSession:
     ) -> SequencePlan:
         """Plan a sequence; it raises nothing for one that is not possible.
 
-        Args:
-            request: the motions. A group's first one may have a start state, the others none.
-            diff: changes of the present scene.
-            from_present: whether start states are ignored, because the robot moves at once.
-            interrupted: tells when planning is to end early.
+        A group's first motion may have a start state, the others none. With `from_present`, start
+        states are ignored, because the robot moves at once.
         """
         started_s = time.monotonic()
         start: JointPositions = {}
@@ -158,10 +155,7 @@ class SequenceServer:
     def __init__(self, node: Node, motions: MotionGoals, limit: BusyLimit) -> None:
         """Offer the action and the service; several threads must spin the node.
 
-        Args:
-            node: gets the servers.
-            motions: plans and moves.
-            limit: of the services that plan.
+        The limit is of the services that plan.
         """
         self._motions = motions
         self._sequences = SequenceSession(motions.session)

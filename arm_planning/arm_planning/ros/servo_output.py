@@ -29,12 +29,7 @@ class ServoOutput:
 
     A trajectory goes on after its period with the joints' coming to rest: a robot whose commands
     end, for whatever reason, stops without a jerk and not later than the jog would have stopped it.
-
-    Args:
-        node: publishes.
-        joints: the group's joints.
-        settings: topic and type.
-        stop_s: returns how long the joints take to stop from their speeds.
+    `stop_s` returns how long the joints take to stop from their speeds.
     """
 
     def __init__(
@@ -77,14 +72,7 @@ class ServoOutput:
             future.add_done_callback(lambda done: self._choose(done.result()))
 
     def publish(self, before: Array, step: JogStep, stamp_s: float, period_s: float) -> None:
-        """Publish a step.
-
-        Args:
-            before: the positions at its start, (n,).
-            step: the step.
-            stamp_s: time of its start, on the node's clock.
-            period_s: how long it takes.
-        """
+        """Publish a step from the positions `before`, (n,), at a time on the node's clock."""
         settings = self._settings
         if not self._is_trajectory:
             values = step.positions if settings.publish_joint_positions else step.speeds

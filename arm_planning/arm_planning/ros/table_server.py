@@ -165,10 +165,7 @@ def _number(node: Node, name: str, value: float) -> float:
 class _RobotInView:
     """Finds the robot of the topic robot_description where it was when a picture was taken.
 
-    Args:
-        node: has the subscription.
-        transforms: say where the links were.
-        padding_m: by which each shape of a link is grown.
+    Each shape of a link is grown by `padding_m`.
     """
 
     def __init__(self, node: Node, transforms: TransformReader, padding_m: float) -> None:
@@ -191,11 +188,9 @@ class _RobotInView:
         return self._is_heard
 
     def pixels(self, header: Header, points: NDArray[np.float32]) -> NDArray[np.bool_] | None:
-        """Return which points (height, width, 3) show the robot, (height, width); None if unknown.
+        """Return which points, (height, width, 3) in m, show the robot, (height, width).
 
-        Args:
-            header: frame and time of the points.
-            points: in m.
+        Return None if that is unknown. The header has frame and time of the points.
         """
         if self._robot is None:
             return None

@@ -49,10 +49,7 @@ class TaskRobot:
     def __init__(self, node: Node, process: NodeProcess, configuration: str) -> None:
         """Wait for move_group, and get its robot and its scene.
 
-        Args:
-            node: has the clients.
-            process: says when to end.
-            configuration: folder or URI of a MoveIt configuration, for the robot's limits.
+        The robot's limits are those of a MoveIt configuration, a folder or a URI.
 
         Raises:
             PlanningError: the configuration or the robot cannot be used, or the process ends.
@@ -95,13 +92,7 @@ class TaskRobot:
         self.planner.scene = self._scene(self.planner.scene, self.planner.model)
 
     def call(self, kind: type[Any], name: str, request: object, server: str) -> Any:
-        """Return a service's answer, once its server is there.
-
-        Args:
-            kind: type of the service.
-            name: its name.
-            request: what to ask.
-            server: its node, of which the user is reminded.
+        """Return a service's answer, once its server is there; the user is reminded of that node.
 
         Raises:
             PlanningError: PREEMPTED: the process ends.

@@ -71,11 +71,7 @@ class ExecutionManager:
     ) -> None:
         """Prepare to run trajectories; other threads must spin the node.
 
-        Args:
-            node: has the action clients.
-            states: the robot's state.
-            controllers: returns the controllers that there are now.
-            settings: tolerances and time limits.
+        `controllers` returns the controllers that there are now.
         """
         self._node = node
         self._states = states
@@ -105,13 +101,10 @@ class ExecutionManager:
         watch: Watch | None = None,
         interrupted: Callable[[], bool] = lambda: False,
     ) -> ExecutionOutcome:
-        """Run a trajectory to its end.
+        """Run a trajectory, whose first point is where the robot is, to its end.
 
-        Args:
-            trajectory: what to run; its first point is where the robot is.
-            names: the only controllers to use; empty for any.
-            watch: called while the robot moves.
-            interrupted: tells when the motion is to end early, as `stop` does.
+        If there are names, only these controllers are used. `watch` is called while the robot
+        moves; `interrupted` tells when the motion is to end early, as `stop` does.
 
         Returns:
             SUCCESS, or why the robot did not get to the end: CONTROL_FAILED, TIMED_OUT, PREEMPTED,

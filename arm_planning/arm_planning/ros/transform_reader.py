@@ -31,10 +31,7 @@ class TransformReader:
     def pose(self, name: str, base: str, stamp: Time | None = None) -> RigidTransform | None:
         """Return a frame's pose in another one; None if no transforms connect them.
 
-        Args:
-            name: the frame.
-            base: the other one.
-            stamp: when, as far as the last transforms go back; None for the last.
+        It is the one at a stamp, as far as the last transforms go back; without a stamp the last.
         """
         stamp_ns = None if stamp is None else stamp.sec * NANOSECONDS + stamp.nanosec
         with self._lock:

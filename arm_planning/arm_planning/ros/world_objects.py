@@ -30,13 +30,7 @@ class WorldObjects:
     """
 
     def __init__(self, node: Node, robot: RigidTransform, links: Collection[str]) -> None:
-        """Listen to the simulation.
-
-        Args:
-            node: has the subscription.
-            robot: pose of the robot's root in the simulated world, where it is fixed.
-            links: the robot's links.
-        """
+        """Listen to the simulation; the robot's root is fixed at this pose in its world."""
         self._world, self._links = robot.inverse(), links
         self._polled = PolledSubscriptions(node)
         latched = QoSProfile(depth=DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)

@@ -42,13 +42,7 @@ class CollisionSlowdown:
         self._bounds, self._reach_m = bounds, reach_m
 
     def of(self, q: Array, speeds: Array, period_s: float) -> Slowdown:
-        """Return by what to slow down.
-
-        Args:
-            q: the state, (n,).
-            speeds: the wanted speeds, (n,).
-            period_s: how long they last.
-        """
+        """Return by what to slow down at wanted speeds, (n,), from a state, (n,), for a period."""
         stop_s = self._bounds.stop_s(speeds)
         braking_m = float(np.abs(speeds).sum()) * self._reach_m * stop_s / 2.0
         thresholds = (self._settings.self_proximity_m, self._settings.scene_proximity_m)

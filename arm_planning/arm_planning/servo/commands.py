@@ -28,12 +28,7 @@ class JointSpeeds:
     def of(
         cls, names: Sequence[str], velocities: Sequence[float], joints: Sequence[str]
     ) -> "JointSpeeds":
-        """Return the speeds in a message.
-
-        Args:
-            names: the joints that it names.
-            velocities: their speeds.
-            joints: the joints of the group.
+        """Return the speeds in a message for the joints of a group.
 
         Raises:
             PlanningError: a joint is not in the group, comes twice or has no finite speed.

@@ -52,11 +52,6 @@ class JogStep:
 class Jog:
     """Jogs a group of a robot. For one thread at a time.
 
-    Args:
-        model: the robot.
-        settings: how.
-        meshes: cuts meshes for the distances.
-
     Attributes:
         group: the group.
 
@@ -107,13 +102,10 @@ class Jog:
         positions: JointPositions,
         period_s: float,
     ) -> JogStep:
-        """Go on by a period.
+        """Go on by a period; without a command, come to rest.
 
-        Args:
-            command: what is wanted; None to come to rest.
-            scene: the surroundings; the same object as long as nothing in them changes.
-            positions: where the robot's joints are. A motion starts from there.
-            period_s: the period.
+        The scene is the same object as long as nothing in it changes. A motion starts from the
+        positions of the robot.
 
         Raises:
             PlanningError: the command cannot be used, or a shape of the scene; nothing moves on.

@@ -66,13 +66,9 @@ class JointBounds:
     ) -> tuple[Array, Slowdown]:
         """Return speeds from which each joint still stops before its margin, (n,), and why.
 
-        A joint within its margin may move away from the limit.
-
-        Args:
-            q: the state, (n,).
-            speeds: the wanted speeds, (n,).
-            period_s: how long they last at least.
-            halts_all: whether all joints slow down with the one that must; else only that one.
+        A joint within its margin may move away from the limit. The wanted speeds, (n,), last at
+        least for the period. With `halts_all`, all joints slow down with the one that must; else
+        only that one.
         """
         room = np.where(speeds > 0.0, self._high - q, q - self._low)
         allowed = _stoppable(np.maximum(room, 0.0), self.acceleration, period_s)
@@ -94,11 +90,7 @@ class JointBounds:
     ) -> Array:
         """Return the speeds after a period, (n,): as near to the wanted ones as accelerations let.
 
-        Args:
-            before: the speeds now, (n,).
-            wanted: the wanted speeds, (n,).
-            period_s: the period.
-            is_urgent: whether the joints may brake harder than they accelerate.
+        If it is urgent, the joints may brake harder than they accelerate.
         """
         change = wanted - before
         most = self.acceleration * period_s * (URGENT if is_urgent else 1.0)

@@ -45,12 +45,7 @@ class TipVelocity:
     """Solves for the joints' speeds. For one thread at a time.
 
     Arms with fewer than six joints follow the position first, and the orientation as far as they
-    can.
-
-    Args:
-        chain: the joints and the tip.
-        bounds: how fast the joints may move, and how soon they stop.
-        settings: thresholds of the condition number.
+    can. The settings have the thresholds of the condition number.
     """
 
     def __init__(self, chain: Chain, bounds: JointBounds, settings: ServoSettings) -> None:

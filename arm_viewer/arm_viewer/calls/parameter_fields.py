@@ -23,12 +23,7 @@ _INTEGERS = range(-(2**63), 2**63)
 
 
 def parameter_field(descriptor: Any, value: Any) -> FormField:
-    """Return the field of a parameter.
-
-    Args:
-        descriptor: its rcl_interfaces/msg/ParameterDescriptor.
-        value: its rcl_interfaces/msg/ParameterValue.
-    """
+    """Return the field of a parameter, from its ParameterDescriptor and its ParameterValue."""
     kind = value.type or descriptor.type
     content: Any = getattr(value, VALUE_FIELDS[value.type]) if value.type else None
     if value.type >= _FIRST_ARRAY:

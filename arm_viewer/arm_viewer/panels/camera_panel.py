@@ -30,13 +30,9 @@ class CameraPanel:
         window: Hideable,
         also: Callable[[], frozenset[str]] = frozenset,
     ) -> None:
-        """Show the images that are wanted.
+        """Show the images that are wanted, also those of the topics that something else shows.
 
-        Args:
-            send: takes requests for images.
-            is_watched: returns whether any browser is connected.
-            window: what holds this panel; it is hidden while there is no image topic.
-            also: returns the topics that something else shows.
+        The window, which holds this panel, is hidden while there is no image topic.
         """
         self._also = also
         self._window = window

@@ -108,12 +108,7 @@ class HeldSlider:
         self._held_from_s = now_s
 
     def shown(self, position: float, now_s: float) -> float | None:
-        """Return what the slider should show, or None to leave it as it is.
-
-        Args:
-            position: position of the joint, rad or m.
-            now_s: time on the same clock as in `hold`.
-        """
+        """Return what the slider should show of its joint's position; None to leave it as it is."""
         if not math.isfinite(position):
             return None
         if not abs(position - self._position) < self._resolution:

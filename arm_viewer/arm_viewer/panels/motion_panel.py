@@ -242,12 +242,7 @@ class _TipFields:
     """The goal of a group's tip by numbers: where it is, and how it is turned."""
 
     def __init__(self, gui: GuiApi, take: Callable[[RigidTransform], None]) -> None:
-        """Create the elements in the open container.
-
-        Args:
-            gui: gets the elements.
-            take: gets the pose in the frame of the robot's root, in m.
-        """
+        """Create the elements in the open container; `take` gets poses in the root link's frame."""
         self._take = take
         self._of = ""
         self._folder = gui.add_folder("Tip by numbers", expand_by_default=False)
@@ -259,12 +254,7 @@ class _TipFields:
         go.on_click(in_order(lambda _: self._read()))
 
     def show(self, group: JointGroup | None, pose_of: Callable[[str], RigidTransform]) -> None:
-        """Begin with a group's pose; hide the fields for a group without a tip.
-
-        Args:
-            group: that is chosen.
-            pose_of: returns the present pose of a link.
-        """
+        """Begin with the pose of a group's tip; hide the fields for a group without one."""
         show(self._folder, group is not None and bool(group.tip))
         if group is not None and group.tip and group.name != self._of:
             self._of = group.name
@@ -317,13 +307,9 @@ class _PathPlayer:
     def update(
         self, plan: ShownPlan | None, origin: RigidTransform, present: JointPositions, now_s: float
     ) -> None:
-        """Show a plan.
+        """Show a plan; joints that it does not know are where they are at present.
 
-        Args:
-            plan: the plan; None for none.
-            origin: pose of the robot's root link in the scene.
-            present: present positions of joints, for those that the plan does not know.
-            now_s: monotonic time.
+        The origin is the pose of the robot's root link in the scene.
         """
         if plan is None:
             self._hide()

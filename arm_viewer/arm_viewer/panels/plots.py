@@ -169,11 +169,9 @@ class PlotFeed:
 
 
 def frame(now_s: float, blocks: list[list[tuple[int, CurveSamples]]]) -> bytes:
-    """Return the payload of a FRAME.
+    """Return the payload of a FRAME at a time since the epoch, with blocks of numbered curves.
 
-    Args:
-        now_s: seconds since the epoch.
-        blocks: numbers and samples of curves with the same times.
+    The curves of a block have the same times.
     """
     parts = [struct.pack("<d", now_s)]
     for block in blocks:

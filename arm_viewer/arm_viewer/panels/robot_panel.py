@@ -66,14 +66,7 @@ class RobotPanel:
     ) -> None:
         """Draw into this scene, below these frames, move things by `poses`, and fit this view.
 
-        Args:
-            scene: the 3D view.
-            frames: below these.
-            poses: move what moves.
-            view: shows all of it.
-            on_click: takes the name of a thing of the world that was clicked, in viser's threads.
-            send: takes requests for contacts.
-            is_watched: returns whether any browser is connected.
+        `on_click` takes the name of a thing of the world that was clicked, in viser's threads.
         """
         self._send = send
         self._is_watched = is_watched

@@ -45,13 +45,7 @@ class SceneObjectPanel:
         self._problem = gui.add_html("", visible=False)
 
     def update(self, view: PlanningView, origin: RigidTransform, links: LinkPoses) -> None:
-        """Show the scene.
-
-        Args:
-            view: the move_group.
-            origin: pose of the robot's root link in the 3D view.
-            links: where the robot's links are.
-        """
+        """Show a move_group's scene, at the pose of the robot's root link in the 3D view."""
         self._objects.update(view.scene if self._is_shown.value else None, origin, links)
         names = options(view.scene.objects if view.scene is not None else ())
         if self._chosen.options != names:

@@ -52,12 +52,7 @@ _FILE_SUFFIX = ".snapshot"
 
 
 def bar_fields(snapshot: Snapshot, now_s: float) -> dict[str, Any]:
-    """Return what the bar shows, but for the running time.
-
-    Args:
-        snapshot: the state.
-        now_s: time on the clock of `Snapshot.made_s`.
-    """
+    """Return what the bar shows, but for the running time; times are on the clock of `made_s`."""
     run, answer = snapshot.run, snapshot.control_answer
     return {
         "state": RECORDING if snapshot.replay else "" if run is None else run.state,

@@ -123,12 +123,7 @@ class Curves:
         self._histories: dict[str, History] = {}
 
     def append(self, times: Array, columns: Mapping[str, Array]) -> None:
-        """Add samples of curves.
-
-        Args:
-            times: seconds since the epoch (n,), ascending.
-            columns: values (n,) by curve.
-        """
+        """Add samples of curves: ascending times since the epoch (n,), and values (n,) by curve."""
         with self._lock:
             for name, values in columns.items():
                 history = self._histories.get(name)

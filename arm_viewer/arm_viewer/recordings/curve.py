@@ -57,12 +57,8 @@ def read_curve(
 ) -> WholeCurve:
     """Return the curve of a number; what was found so far once `goes_on` returns false.
 
-    Args:
-        bag: the recording.
-        topic: of the messages.
-        place: of the number.
-        goes_on: asked before each chunk.
-        length_s: what the columns stand for, from the beginning on; None for all there is.
+    It is asked before each chunk. The columns stand for `length_s` from the beginning on, or for
+    all there is.
 
     Raises:
         PageRecordingError: the file is damaged.
@@ -93,14 +89,9 @@ def read_samples(
     after_ns: int,
     until_ns: int,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the numbers of the messages in a span of time.
+    """Return numbers of the messages after a time, up to another one.
 
-    Args:
-        bag: the recording.
-        topic: of the messages.
-        places: of k numbers in messages of one layout, at least one.
-        after_ns: the messages are later than this.
-        until_ns: the time of the last message.
+    The places are those of k numbers, at least one, in messages of one layout.
 
     Returns:
         Times in s since 1970 (n,) and numbers (k, n).

@@ -50,14 +50,7 @@ class Player:
         make_reader: Callable[[RecordedBag], StateReader],
         check_run: Callable[[Path, Callable[[RunCheck], None]], RunCheck] = RunCheck,
     ) -> None:
-        """Begin live.
-
-        Args:
-            live: returns the newest live snapshot.
-            send: takes the requests that go to the robots.
-            make_reader: returns what reads the messages of a recording.
-            check_run: begins to verify a recording of a run.
-        """
+        """Begin live; `send` takes the requests for robots, `check_run` begins to verify a run."""
         self._live = live
         self._send = send
         self._make_reader = make_reader

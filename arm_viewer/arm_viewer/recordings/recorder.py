@@ -57,10 +57,7 @@ class Recorder:
     ) -> None:
         """Record into new folders and files in this folder.
 
-        Args:
-            folder: where they are made.
-            command: `arm`, whose `bag record` and `sim record` go on until they get a SIGINT.
-            now_s: the clock.
+        The command is `arm`, whose `bag record` and `sim record` go on until they get a SIGINT.
         """
         self.folder = folder
         self._command = command

@@ -91,12 +91,7 @@ class RunCheck:
         changed: Callable[["RunCheck"], None],
         command: Sequence[str] = (sys.executable, "-P", "-m", "arm_cli", "sim", "replay"),
     ) -> None:
-        """Begin.
-
-        Args:
-            path: the recording.
-            changed: called in another thread when there is more to show, and at the end.
-            command: what runs it again.
+        """Begin; `changed` is called in another thread when there is more to show, and at the end.
 
         Raises:
             PageRecordingError: the process cannot be started.

@@ -61,10 +61,7 @@ class ActionCaller:
     def start(self, goal: Any, end: End, max_wait_s: float = math.inf) -> None:
         """Send a goal; a goal that is under way is forgotten.
 
-        Args:
-            goal: the goal.
-            end: called once, when the goal ends or counts as lost.
-            max_wait_s: how long the result may take.
+        `end` is called once, when the goal ends or counts as lost, as after `max_wait_s`.
         """
         self._get.forget()
         self._goal_id = UUID(uuid=list(uuid.uuid4().bytes))

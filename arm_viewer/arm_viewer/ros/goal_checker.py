@@ -26,13 +26,7 @@ class GoalChecker:
     """Checks the latest goal, one at a time. Use it in the executor's thread."""
 
     def __init__(self, node: Node, namespace: str, take: Callable[[GoalState], None]) -> None:
-        """Create the client.
-
-        Args:
-            node: gets the client.
-            namespace: of the move_group.
-            take: receives each checked goal with its contacts.
-        """
+        """Create the client; `take` receives each checked goal with its contacts."""
         self._service = ServiceCaller(node, GetStateValidity, f"{namespace}/check_state_validity")
         self._take = take
         self._waiting: GoalState | None = None

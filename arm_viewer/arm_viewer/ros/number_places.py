@@ -18,12 +18,7 @@ MARK = 2.0**-900
 
 
 def number_places(data: bytes, message_class: type) -> dict[str, NumberPlace]:
-    """Return where each number stands, by its name, such as "position[j0]" or "pose.position.x".
-
-    Args:
-        data: a message.
-        message_class: its class.
-    """
+    """Return where each number stands, by its name, such as "position[j0]" or "pose.position.x"."""
     if len(data) > MAX_BYTES or not data.startswith(LITTLE_ENDIAN):
         return {}
     try:

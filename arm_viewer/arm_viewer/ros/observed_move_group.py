@@ -44,16 +44,7 @@ class ObservedMoveGroup:
         present: Callable[[], Mapping[str, float]],
         clock: Callable[[], SimulationTime | None],
     ) -> None:
-        """Create the clients.
-
-        Args:
-            node: gets the clients.
-            polled: makes the subscriptions.
-            namespace: of the move_group.
-            model: the robot.
-            present: returns the present positions of joints.
-            clock: returns the simulation time; None without a simulation.
-        """
+        """Create the clients; without a simulation, `clock` returns None."""
         self.view = PlanningView(namespace, model)
         self._make_jogger = partial(TipJogger, node, polled, namespace, model, clock)
         self._jogger: TipJogger | None = None

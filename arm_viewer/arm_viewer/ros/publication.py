@@ -32,16 +32,7 @@ class Publication:
         rate_hz: float,
         report: Report,
     ) -> None:
-        """Make the publisher.
-
-        Args:
-            node: gets the publisher.
-            message_class: type of the message.
-            topic: name of the topic.
-            filled: the message.
-            rate_hz: how often; 0 publishes once.
-            report: takes what has become of it.
-        """
+        """Make the publisher; a rate of 0 publishes once."""
         self._node = node
         self._filled = filled
         self._rate_hz = rate_hz

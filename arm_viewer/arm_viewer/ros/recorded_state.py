@@ -108,13 +108,9 @@ class RecordedState:
         )
 
     def at(self, time_ns: int, now_s: float, speed: float, wanted: Wanted) -> Snapshot:
-        """Return the state at a moment.
+        """Return the state at a moment of the recording's time; the speed is 0 while it stands.
 
-        Args:
-            time_ns: the moment, in the recording's time.
-            now_s: what the snapshot says about when it was made.
-            speed: of playing; 0 while it stands.
-            wanted: the pictures and curves that are shown.
+        The snapshot says that it was made at `now_s`.
 
         Raises:
             PageRecordingError: the file is damaged.

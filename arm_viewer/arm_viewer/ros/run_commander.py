@@ -65,13 +65,7 @@ class RunCommander(Observer):
     """Calls the services of the simulation, and keeps what they answer."""
 
     def __init__(self, node: Node, answers: ControlAnswers, changed: Callable[[], None]) -> None:
-        """Start without a simulation.
-
-        Args:
-            node: gets the clients.
-            answers: takes the answers.
-            changed: called after each answer.
-        """
+        """Start without a simulation; `changed` is called after each answer."""
         self._node = node
         self._answers = answers
         self._changed = changed

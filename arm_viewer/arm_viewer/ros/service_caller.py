@@ -19,14 +19,7 @@ class ServiceCaller:
     def __init__(
         self, node: Node, service_class: Any, service: str, max_wait_s: float = MAX_WAIT_S
     ) -> None:
-        """Create the client.
-
-        Args:
-            node: gets the client.
-            service_class: type of the service.
-            service: name of the service.
-            max_wait_s: after this time a response counts as lost, and the next call is allowed.
-        """
+        """Create the client; a response that takes longer than `max_wait_s` counts as lost."""
         self.service = service
         self._max_wait_s = max_wait_s
         self._node = node

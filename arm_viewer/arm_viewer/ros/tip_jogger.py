@@ -50,15 +50,7 @@ class TipJogger:
         model: PlanningModel,
         clock: Callable[[], SimulationTime | None],
     ) -> None:
-        """Create the clients.
-
-        Args:
-            node: gets the clients.
-            polled: makes the subscription.
-            namespace: of the servo_node.
-            model: its robot.
-            clock: returns the simulation time; None without a simulation.
-        """
+        """Create the clients; without a simulation, `clock` returns None."""
         self._node, self._model, self._clock = node, model, clock
         self._group = ""
         self._drag = 0

@@ -47,14 +47,7 @@ class TipSolver:
     def __init__(
         self, node: Node, namespace: str, seed: Callable[[str], JointPositions], take: Take
     ) -> None:
-        """Create the client.
-
-        Args:
-            node: gets the client.
-            namespace: of the move_group.
-            seed: returns the positions from which a group's are sought.
-            take: receives each answer.
-        """
+        """Create the client; `seed` returns the positions from which a group's are sought."""
         self._service = ServiceCaller(node, GetPositionIK, f"{namespace}/compute_ik")
         self._seed = seed
         self._take = take

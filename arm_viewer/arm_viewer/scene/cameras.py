@@ -27,12 +27,7 @@ class Cameras:
         self._handles: dict[CameraView, LineSegmentsHandle] = {}
 
     def update(self, views: Mapping[str, CameraView], shown: bool) -> None:
-        """Draw new cameras, remove old ones, and show or hide all.
-
-        Args:
-            views: the cameras by topic; a camera with several topics is drawn once.
-            shown: whether cameras are visible.
-        """
+        """Draw new cameras, remove old ones, and show or hide all; each is drawn once."""
         wanted = {view: topic for topic, view in views.items()} if shown else {}
         for view in self._handles.keys() - wanted:
             self._handles.pop(view).remove()

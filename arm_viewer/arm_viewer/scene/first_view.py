@@ -136,12 +136,7 @@ class FirstView:
         """Browsers whose address names a view."""
 
     def is_due(self, key: object, now_s: float) -> bool:
-        """Return whether the scene has changed and has then settled.
-
-        Args:
-            key: identifies the set of robots and other bodies.
-            now_s: monotonic time.
-        """
+        """Return whether the contents, which `key` identifies, have changed and then settled."""
         if key != self._key:
             self._key, self._changed_s, self._contents = key, now_s, None
         return self._contents is None and now_s - self._changed_s > SETTLED_S
@@ -164,12 +159,7 @@ class FirstView:
         self._chosen = None
 
     def choose(self, view: View, client_ids: Iterable[int] = ()) -> None:
-        """Use this view in place of the fitted one.
-
-        Args:
-            view: the first view from now on, until `fit_again`.
-            client_ids: the browsers whose cameras it moves in any case.
-        """
+        """Use this view until `fit_again`; the cameras of these browsers move there in any case."""
         self._chosen = view
         self._version += 1
         for client_id in client_ids:

@@ -142,12 +142,7 @@ def assumed_transforms(
 ) -> dict[str, Transform]:
     """Return the transforms that /tf lacks, by child frame, with joints at their initial positions.
 
-    Args:
-        robot: the robot.
-        places: the frame of each link.
-        initial: initial joint positions, rad or m; other joints are at 0, or at the nearest limit
-            if 0 is outside their limits.
-        known: the frames that have a transform to their parent.
+    Other joints are at 0, or at the nearest limit if 0 is outside their limits.
     """
     missing = [joint for joint in robot.joints if places[joint.child] not in known]
     if not missing:

@@ -25,14 +25,7 @@ class Ghost:
     """Draws a robot when it is first shown; use it in viser's event loop."""
 
     def __init__(self, scene: SceneApi, name: str, model: PlanningModel, colour: Colour) -> None:
-        """Prepare a robot without drawing it.
-
-        Args:
-            scene: the scene to draw into.
-            name: unique name for its scene nodes.
-            model: the robot.
-            colour: colour of links that touch nothing.
-        """
+        """Prepare a robot without drawing it; links that touch nothing get this colour."""
         self._scene = scene
         self._path = f"/planning/{node_name(name)}"
         self._model = model
@@ -52,11 +45,8 @@ class Ghost:
     ) -> None:
         """Show the robot, but for links that are where the real ones are and touch nothing.
 
-        Args:
-            origin: pose of the root link in the scene.
-            positions: positions of its active joints; others are where they are at present.
-            present: the present positions.
-            colliding: links to draw in the colour of collisions.
+        Joints without a position are where they are at present; colliding links get the colour of
+        collisions. The origin is the pose of the root link in the scene.
         """
         root = self._root = self._root or self._draw()
         has_changed = self._colliding != frozenset(colliding)

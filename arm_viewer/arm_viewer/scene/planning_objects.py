@@ -42,13 +42,7 @@ class PlanningObjects:
         self._drawn: dict[str, _Drawn] = {}
 
     def update(self, scene: PlanningScene | None, origin: RigidTransform, links: LinkPoses) -> None:
-        """Show the objects of a scene.
-
-        Args:
-            scene: the planning scene; None for no objects.
-            origin: pose of the robot's root link, which is the planning frame, in the 3D view.
-            links: where the robot's links are, in the planning frame.
-        """
+        """Show the objects of a scene, if any, at the pose of the planning frame in the 3D view."""
         wanted: dict[str, tuple[CollisionObject, Colour, RigidTransform]] = {}
         if scene is not None:
             for each in scene.objects.values():

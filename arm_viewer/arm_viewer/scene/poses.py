@@ -60,11 +60,7 @@ class Poses:
         self._moved.discard(node.name)
 
     def send(self, now_s: float) -> None:
-        """Send what has moved since the last call.
-
-        Args:
-            now_s: monotonic time.
-        """
+        """Send what has moved since the last call."""
         self._askers = [browser for browser in self._askers if browser.is_connected]
         if self._numbers.keys() != self._poses.keys():
             self._number()

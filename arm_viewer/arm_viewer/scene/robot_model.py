@@ -38,15 +38,7 @@ class RobotModel:
     def __init__(
         self, scene: SceneApi, frames: Frames, name: str, robot: Robot, places: Mapping[str, str]
     ) -> None:
-        """Prepare a robot without drawing it.
-
-        Args:
-            scene: the scene to draw into.
-            frames: the frames of this scene.
-            name: unique name of the robot for its scene nodes.
-            robot: the robot to draw.
-            places: the frame of each link.
-        """
+        """Prepare a robot without drawing it; its scene nodes get this unique name."""
         self._scene = scene
         self._frames = frames
         self._name = name
@@ -65,13 +57,7 @@ class RobotModel:
         return self._problems.keys()
 
     def show(self, layers: Collection[str], transparent: bool, grey: bool = False) -> None:
-        """Show these layers and hide the others.
-
-        Args:
-            layers: keys of LAYERS.
-            transparent: whether links are transparent, so that what is inside them is visible.
-            grey: whether links are drawn in grey instead of their own colours.
-        """
+        """Show these LAYERS and hide the others; transparent links show what is inside them."""
         for layer in LAYERS:
             if layer in layers and layer not in self._drawn:
                 self._draw(layer)

@@ -23,11 +23,6 @@ def centre_of_mass(
 ) -> tuple[float, Vector] | None:
     """Return a robot's mass in kg, and its centre of mass in the world's frame.
 
-    Args:
-        robot: the robot.
-        places: the frame of each link.
-        poses: the frames that have a pose.
-
     Returns:
         None if no link has a mass, or one that has is nowhere.
     """

@@ -69,9 +69,7 @@ def check_size(name: str, size: int) -> None:
 def check_file(file: DroppedFile, folder: Path) -> CheckedFile:
     """Return a file as the simulation takes it.
 
-    Args:
-        file: the file.
-        folder: an empty folder for it; a mesh must stay there as long as the simulation runs.
+    The folder is empty; a mesh must stay there as long as the simulation runs.
 
     Raises:
         DroppedFileError: it cannot be simulated; the message has what `arm check` says.

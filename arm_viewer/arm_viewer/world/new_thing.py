@@ -66,13 +66,7 @@ def new_thing(fields: ThingFields) -> tuple[str, RigidTransform]:
 
 
 def mesh_thing(name: str, mesh: Path, metres: float) -> str:
-    """Return the SDF of a free thing with the shape of a mesh file.
-
-    Args:
-        name: name of the model.
-        mesh: the file.
-        metres: length of the mesh's unit.
-    """
+    """Return the SDF of a free thing with the shape of a mesh file in a unit of so many metres."""
     uri = mesh.as_uri()
     shape = f"<mesh><uri>{uri}</uri><scale>{metres} {metres} {metres}</scale></mesh>"
     return _sdf(name, shape, MESH_RGB, MESH_MASS_KG, MESH_FRICTION, False)
