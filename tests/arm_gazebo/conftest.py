@@ -15,6 +15,7 @@ from arm_gazebo.model.builder import build_model
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics_timing import physics_timing
+from arm_gazebo.robot.gazebo_tags import parse_gazebo_tags
 from arm_gazebo.robot.part import BuildOptions
 from arm_gazebo.sensors.camera import CameraSensor
 
@@ -135,9 +136,8 @@ def build(
     urdf: str, world: str | Path = "empty", cameras: Sequence[CameraSensor] = (), **options: object
 ) -> BuiltModel:
     """Build the model of a URDF with its hardware."""
-    return build_model(
-        parse_urdf(urdf), parse_hardware_info(urdf), cameras, world, BuildOptions(**options)
-    )
+    robot, hardware, tags = parse_urdf(urdf), parse_hardware_info(urdf), parse_gazebo_tags(urdf)
+    return build_model(robot, hardware, cameras, world, BuildOptions(**options), tags)
 
 
 class Bench:

@@ -117,6 +117,7 @@ class PhysicsBatch:
         self._time = self._batch.bind("time").reshape(copies)
         self.qpos, self.qvel = self._batch.bind("qpos"), self._batch.bind("qvel")
         self._new_inertia, self._new_bias = self._batch.bind("M"), self._batch.bind("qfrc_bias")
+        self._lifted = self._batch.bind("qfrc_gravcomp")
         self._inertia = np.zeros(self._new_inertia.shape)
         self._bias = np.zeros(self._new_bias.shape)
         self._link_positions = self._batch.bind("xpos")
@@ -132,7 +133,8 @@ class PhysicsBatch:
         self._batch.reset(rows, stage=NO_STAGE)
         self.qpos[rows] = self._start.qpos
         # What the drives read in the first period.
-        self._inertia[rows], self._bias[rows] = self._start.M, self._start.qfrc_bias
+        self._inertia[rows] = self._start.M
+        self._bias[rows] = self._start.qfrc_bias - self._start.qfrc_gravcomp
         # MuJoCo sets the time to 0 when a copy becomes unstable, so no copy may start at 0.
         self._periods[rows], self._time[rows] = 1, self._period_s
         self._servo.restart(rows, self.qpos[rows], self.qvel[rows])
@@ -153,7 +155,8 @@ class PhysicsBatch:
             failed |= self._time < least_s
             # Copied, because reading poses evaluates them again, and the drives read the last
             # step's.
-            self._inertia[...], self._bias[...] = self._new_inertia, self._new_bias
+            self._inertia[...] = self._new_inertia
+            np.subtract(self._new_bias, self._lifted, self._bias)
             # As in `Physics.advance`: MuJoCo adds up its steps with their rounding errors.
             self._periods += 1
             np.multiply(self._periods, self._period_s, out=self._time)

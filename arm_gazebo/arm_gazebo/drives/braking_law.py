@@ -250,7 +250,7 @@ def slow_joints(
         data.qpos[:] = qpos
         data.qpos[[joint.qpos_address for joint in joints]] = pose
         mujoco.mj_forward(model, data)
-        gravity = tuning.coupling.T @ data.qfrc_bias
+        gravity = tuning.coupling.T @ (data.qfrc_bias - data.qfrc_gravcomp)
         felt = law.felt(data.M[None])[0]
         # [j, i]: each joint alone, while the others hold.
         others = np.where(np.eye(len(joints), dtype=bool), 1.0, RESTING)

@@ -160,7 +160,9 @@ class Servo:
         self._dofs, self._addresses = as_slice(dofs), as_slice(addresses)
         self._diagonal = as_slice(model.M_rowadr[dofs] + model.M_rownnz[dofs] - 1)
         self._qpos, self._qvel = data.qpos, data.qvel
-        self._inertia, self._bias = data.M, data.qfrc_bias
+        self._inertia = data.M
+        self._lifted = data.qfrc_gravcomp if model.ngravcomp else None
+        self._bias = data.qfrc_bias if self._lifted is None else np.zeros(model.nv)
 
     @property
     def joints(self) -> tuple[RobotJoint, ...]:
@@ -255,6 +257,8 @@ class Servo:
             if self._tick % self._check_ticks or not self._has_moved():
                 return
             self._awake_ticks = self._settle_ticks
+        if self._lifted is not None:
+            np.subtract(self._data.qfrc_bias, self._lifted, self._bias)
         gravity = self._felt(self._bias)
         if self._way_to_renew <= 0.0:
             self._renew_braking(gravity)

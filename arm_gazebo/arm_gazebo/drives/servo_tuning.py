@@ -392,6 +392,9 @@ def _sample(
         mujoco.mj_fullM(model, data, full)
         mujoco.mj_comVel(model, data)
         mujoco.mj_rne(model, data, 0, efforts)
+        if model.ngravcomp:
+            mujoco.mj_passive(model, data)
+            efforts -= data.qfrc_gravcomp
         columns = full[:, dofs] + full[:, followers] @ ratios
         felt = columns[dofs] + ratios.T @ columns[followers]
         np.maximum(inertia, np.abs(felt), out=inertia)

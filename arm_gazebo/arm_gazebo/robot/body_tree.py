@@ -46,12 +46,14 @@ class TreeOptions:
         default: default values; the world file's own defaults are for the world only.
         free: whether a root link other than `world` can move.
         spawn: pose of the root in the world.
+        weightless: names of the links on which gravity does not act.
     """
 
     step_s: float
     default: mujoco.MjsDefault
     free: bool
     spawn: Pose
+    weightless: frozenset[str] = frozenset()
 
 
 class BodyTree:
@@ -81,6 +83,7 @@ class BodyTree:
         self._default = options.default
         self._free = options.free
         self._spawn = options.spawn
+        self._weightless = options.weightless
         self._report = report
         self._bodies: dict[str, mujoco.MjsBody] = {}
         self._joint_names = {joint.name for joint in (*spec.joints, *robot.joints)}
@@ -141,6 +144,7 @@ class BodyTree:
 
     def _add_link(self, body: mujoco.MjsBody, link: Link, moves: bool) -> None:
         self._geometry.add(body, link)
+        body.gravcomp = float(link.name in self._weightless)
         inertial = link.inertial
         if inertial is not None and (inertial.mass > 0 or moves):
             inertia = repair_inertia(inertial, self._box_if_implausible(inertial, link))

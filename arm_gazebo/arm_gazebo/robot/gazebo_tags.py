@@ -49,6 +49,7 @@ MAX_FRICTION = 10.0
 """With it nothing slides on a slope of 84 degrees; more makes contacts hard to solve."""
 FRICTION_TAGS = ("mu", "mu1", "mu2")
 SELF_COLLIDE_TAGS = ("selfCollide", "self_collide")
+GRAVITY_TAGS = ("gravity", "turnGravityOff")
 IGNORED_TAGS = frozenset(
     {
         "sensor",  # read by `arm_gazebo.sensors`
@@ -96,6 +97,7 @@ class LinkTags:
         grip_frame: the link in whose axes `grip` is given; empty for this one.
         self_collide: whether it collides with other links of the robot.
         rgba: colour of all its visuals, None if not given.
+        weightless: whether gravity does not act on it.
     """
 
     friction: float | None = None
@@ -104,6 +106,7 @@ class LinkTags:
     grip_frame: str = ""
     self_collide: bool = False
     rgba: Color | None = None
+    weightless: bool = False
 
 
 NO_LINK_TAGS = LinkTags()
@@ -126,6 +129,11 @@ class GazeboTags:
     def link(self, name: str) -> LinkTags:
         """Return the tags of a link."""
         return self.links.get(name, NO_LINK_TAGS)
+
+    @property
+    def weightless(self) -> frozenset[str]:
+        """The links on which gravity does not act."""
+        return frozenset(name for name, tags in self.links.items() if tags.weightless)
 
 
 def parse_gazebo_tags(description: Description) -> GazeboTags:
@@ -189,9 +197,11 @@ class _TagReader:
         if element.tag == "fdir1" and reference:
             return self._grip(tags, element)
         if element.tag in SELF_COLLIDE_TAGS:
-            wanted = _text(element).lower() in ("true", "1")
+            wanted = _is_true(element)
             self._self_collide |= wanted and not reference
             return replace(tags, self_collide=wanted)
+        if element.tag in GRAVITY_TAGS and reference:
+            return replace(tags, weightless=_is_true(element) != (element.tag == "gravity"))
         if element.tag == "material" or (element.tag == "visual" and reference):
             return replace(tags, rgba=self._color(element) or tags.rgba)
         if element.tag == "plugin":
@@ -263,6 +273,10 @@ class _TagReader:
 
 def _text(element: UrdfElement) -> str:
     return element.content or element.text("value")
+
+
+def _is_true(element: UrdfElement) -> bool:
+    return _text(element).lower() in ("true", "1")
 
 
 def _numbers(text: str) -> list[float]:

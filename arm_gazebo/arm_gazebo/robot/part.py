@@ -187,7 +187,8 @@ class RobotPart:
         meshes = MeshLibrary(self._spec, options.resources, cache)
         masks = layer.masks(options.self_collide or entry.tags.self_collide)
         geometry = LinkGeometry(meshes, default, entry.tags, masks, options.strict, self._report)
-        tree = TreeOptions(options.step_s, default, self._free, options.spawn or Pose())
+        spawn, weightless = options.spawn or Pose(), entry.tags.weightless
+        tree = TreeOptions(options.step_s, default, self._free, spawn, weightless)
         return BodyTree(self._spec, entry.robot, geometry, tree, self._report).add()
 
 

@@ -70,6 +70,7 @@ class SdfModel:
         automatic: the links whose inertia is computed; they have no inertia in `robot`.
         planes: the planes, which cannot be part of a robot's link.
         static: whether it is part of the world.
+        weightless: names of the links on which gravity does not act.
     """
 
     robot: Robot
@@ -78,6 +79,7 @@ class SdfModel:
     automatic: Mapping[str, AutoInertia]
     planes: tuple[SdfPlane, ...]
     static: bool
+    weightless: frozenset[str] = frozenset()
 
 
 def read_model(scope: SdfScope, name: str, static: bool | None = None) -> tuple[SdfModel, ...]:
@@ -121,7 +123,8 @@ def _read_body(model: SdfElement, body: RigidBody) -> SdfModel:
         raise model.error(f"is not a valid model: {error}") from error
     frictions = {reader.name: reader.frictions() for reader in read}
     automatic = {reader.name: auto for reader in read if (auto := reader.auto_inertia())}
-    return SdfModel(robot, body.frame, frictions, automatic, planes, body.static)
+    weightless = frozenset(reader.name for reader in read if reader.is_weightless())
+    return SdfModel(robot, body.frame, frictions, automatic, planes, body.static, weightless)
 
 
 class _LinkReader:
@@ -171,6 +174,10 @@ class _LinkReader:
             for collision, _ in self._solids("collision")
         )
         return AutoInertia(densities, inertial.size("mass") if inertial.child("mass") else None)
+
+    def is_weightless(self) -> bool:
+        """Return whether gravity does not act on the link."""
+        return self._link.child("gravity") is not None and not self._link.flag("gravity")
 
     def planes(self) -> Iterator[SdfPlane]:
         """Yield the link's planes in the frame of the rigid body."""

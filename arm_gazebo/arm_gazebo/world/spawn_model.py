@@ -149,9 +149,8 @@ class ModelSource:
         default = mujoco.MjSpec().default
         geometry = LinkGeometry(meshes, default, tags, WORLD_MASKS, True, report)
         free = robot.root != WORLD_LINK and not _is_static(description)
-        bodies = BodyTree(
-            spec, robot, geometry, TreeOptions(self.step_s, default, free, Pose()), report
-        ).add()
+        options = TreeOptions(self.step_s, default, free, Pose(), tags.weightless)
+        bodies = BodyTree(spec, robot, geometry, options, report).add()
         follow = mimic_rules(robot, report)
         add_equalities(spec, robot, follow, self.step_s, report)
         _leave_out_own_contacts(spec, bodies, tags, report)

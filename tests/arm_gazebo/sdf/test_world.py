@@ -78,6 +78,15 @@ def test_free_model_stands_on_the_ground(world):
     assert data.body("red_cylinder").xpos == pytest.approx([0.22, 0.12, 0.175], abs=1e-3)
 
 
+@pytest.mark.parametrize(("gravity", "falls"), [("false", False), ("0", False), ("true", True)])
+def test_gravity_does_not_act_on_a_link_that_says_so(world, gravity, falls):
+    free = model("crate", "0 0 3 0 0 0", f"<gravity>{gravity}</gravity>{BOX}")
+    compiled, data, report = world(GROUND, free)
+    mujoco.mj_step(compiled, data, nstep=100)
+    assert (data.body("crate").xpos[2] < 2.9) == falls
+    assert report.findings == ()
+
+
 def test_a_link_without_inertial_weighs_what_it_does_in_gazebo(world):
     compiled, _, report = world(model("crate"))
     crate = compiled.body("crate::link")

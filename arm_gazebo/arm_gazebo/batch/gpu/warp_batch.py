@@ -48,6 +48,15 @@ def read_column(array: wp.array2d[wp.vec3], column: wp.int32, result: wp.array[w
     result[copy] = array[copy, column]
 
 
+@wp.kernel
+def subtract(
+    array: wp.array2d[wp.float32], part: wp.array2d[wp.float32], result: wp.array2d[wp.float32]
+) -> None:
+    """Subtract one array from another."""
+    copy, column = wp.tid()
+    result[copy, column] = array[copy, column] - part[copy, column]
+
+
 LEAST_CONTACTS = 48
 CONTACTS = 32
 CONTACTS_PER_TREE = 12
@@ -116,7 +125,18 @@ SLEEP = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 CONTACT = int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
 LARGEST = float(mujoco.mjMAXVAL)
 """MuJoCo, too, counts a state with a larger number as unstable."""
-STATE = ("qpos", "qvel", "act", "ctrl", "qacc_warmstart", "M", "qfrc_bias", "history", "plastic")
+STATE = (
+    "qpos",
+    "qvel",
+    "act",
+    "ctrl",
+    "qacc_warmstart",
+    "M",
+    "qfrc_bias",
+    "qfrc_gravcomp",
+    "history",
+    "plastic",
+)
 """What the next steps and the drives depend on, apart from the time."""
 
 
@@ -155,6 +175,8 @@ class WarpBatch:
             self._data = mujoco_warp.make_data(model, nworld=copies, **room)
             self._servo = ServoWarp(model, simulation.servo, copies, self._start.qpos, device)
             self._starts = self._find_starts()
+            lifts = model.ngravcomp
+            self._bias = wp.empty_like(self._data.qfrc_bias) if lifts else self._data.qfrc_bias
             self.qpos, self.qvel = np.zeros((copies, model.nq)), np.zeros((copies, model.nv))
             pinned = device != HOST_COMPILED
             self._mirrors = [
@@ -221,7 +243,10 @@ class WarpBatch:
     def _period(self) -> None:
         """Do a control period."""
         data = self._data
-        self._servo.update(data.qpos, data.qvel, data.M, data.qfrc_bias, data.act, data.ctrl)
+        if self._bias is not data.qfrc_bias:
+            inputs = [data.qfrc_bias, data.qfrc_gravcomp, self._bias]
+            wp.launch(subtract, self._bias.shape, inputs=inputs, device=self._device)
+        self._servo.update(data.qpos, data.qvel, data.M, self._bias, data.act, data.ctrl)
         for _ in range(self._steps):
             mujoco_warp.step(self._model, data)
 
@@ -255,7 +280,7 @@ class WarpBatch:
     def _find_starts(self) -> list[tuple[Any, Any]]:
         """Return the arrays of the state, and the row of each at the start."""
         start, data = self._start, self._data
-        known = {"qpos": start.qpos, "M": start.M, "qfrc_bias": start.qfrc_bias}
+        known = {name: getattr(start, name) for name in ("qpos", "M", "qfrc_bias", "qfrc_gravcomp")}
         fields = [(getattr(data, name), known.get(name)) for name in STATE]
         fields.append((data.time.reshape((self.copies, 1)), None))
         return [
