@@ -249,6 +249,7 @@ class ForwardCommandController(ForwardCommander[ForwardCommandParameters]):
             )
         self._command_names = tuple(f"{joint}/{interface}" for joint in parameters.joints)
         self._timeout_s = parameters.command_timeout
+        super().on_configure(parameters)
 
 
 class JointGroupPositionController(ForwardCommandController):
@@ -301,6 +302,7 @@ class MultiInterfaceForwardCommandController(
             f"{parameters.joint}/{interface}" for interface in parameters.interface_names
         )
         self._timeout_s = parameters.command_timeout
+        super().on_configure(parameters)
 
 
 class JointPositionController(ForwardCommander[JointPositionParameters]):
@@ -323,3 +325,4 @@ class JointPositionController(ForwardCommander[JointPositionParameters]):
             )
         self._command_names = (f"{parameters.joint}/position",)
         self._timeout_s = parameters.command_timeout
+        super().on_configure(parameters)

@@ -173,6 +173,7 @@ class JointTrajectoryController(GoalController[JointTrajectoryParameters]):
         except ParameterError as error:
             raise ControllerError(str(error)) from error
         self._speed_scaling = SpeedScaling(parameters.speed_scaling, self.logger)
+        super().on_configure(parameters)
 
     def update_parameters(self, parameters: JointTrajectoryParameters) -> None:
         """Apply parameters that changed since `on_configure`; read-only ones are unchanged.
@@ -184,6 +185,7 @@ class JointTrajectoryController(GoalController[JointTrajectoryParameters]):
         self._configuration = Configuration.of(parameters, self._robot, self.logger)
         if self._tracker is not None:
             self._tracker.reconfigure(self._configuration)
+        super().update_parameters(parameters)
 
     def on_activate(self) -> None:
         """Hold the position and start accepting requests."""
@@ -254,6 +256,7 @@ class JointTrajectoryController(GoalController[JointTrajectoryParameters]):
     def on_cleanup(self) -> None:
         """Forget the parameters."""
         self._configuration = self._speed_scaling = None
+        super().on_cleanup()
 
     def _configured(self) -> tuple[Configuration, SpeedScaling]:
         if self._configuration is None or self._speed_scaling is None:
