@@ -51,9 +51,7 @@ def add_model(
     default = mujoco.MjSpec().default
     geometry = _SdfGeometry(model, meshes, strict, report)
     place = pose_of(pose @ model.frame)
-    options = TreeOptions(
-        spec.option.timestep, default, not model.static, place, model.weightless
-    )
+    options = TreeOptions(spec.option.timestep, default, not model.static, place, model.weightless)
     robot = model.robot if model.static else _with_inertia(model, meshes, report)
     bodies = BodyTree(spec, robot, geometry, options, report).add()
     for plane in model.planes:
