@@ -208,6 +208,8 @@ def nodes(words: Mapping[str, str]) -> list[Action]:
     setup = single_robot(words)
     if words["hardware"] != "simulation":
         return real_robot(words, setup)
+    if words["planning"] == "true" and not words.get("moveit_config"):
+        setup = free_at_start(setup)
     place = {name: LaunchConfiguration(name) for name in ("base", "pose")}
     return [
         *(LogInfo(msg=remark) for remark in setup.remarks),
@@ -228,6 +230,13 @@ def single_robot(words: Mapping[str, str]) -> "RobotSetup":
     names = ("model", "model_args", "controllers", "spawn", "package_path")
     commander = TRAJECTORY if words["planning"] == "true" else COMMANDER
     return set_up_robot(*(words[name] for name in names), commander=commander)
+
+
+def free_at_start(setup: "RobotSetup") -> "RobotSetup":
+    """Return a robot without an SRDF so that motions can be planned from where it starts."""
+    from arm_gazebo.launching.free_start import starting_free
+
+    return starting_free(setup)
 
 
 def robots_of(words: Mapping[str, str]) -> "Mapping[str, PlacedRobot]":

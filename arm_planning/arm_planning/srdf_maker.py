@@ -36,6 +36,9 @@ BATCH = 500
 HOME = "home"
 HOME_SAMPLES = 2_000
 """States to look at, farther and farther away, if the robot collides at home."""
+HOME_CLEARANCE_M = 0.005
+"""How far apart links are at such a home, if possible: a servo does not hold an arm exactly."""
+HOME_DIGITS = 2
 
 Warn = Callable[[str], None]
 
@@ -76,6 +79,29 @@ def make_srdf(
     return sampler.with_free_home(made, warn)
 
 
+def free_start(robot: Robot, meshes: MeshPieces | None = None) -> dict[str, float]:
+    """Return where the joints start so that the robot does not touch itself: home, as it is made.
+
+    Empty if it does not touch itself with all joints at zero, or their limits nearest to it; and if
+    there is no other home. It is much faster than `make_srdf`.
+
+    Args:
+        robot: the robot.
+        meshes: cuts meshes, as for `CollisionModel`.
+
+    Raises:
+        PlanningError: a mesh cannot be used.
+    """
+    srdf = default_srdf(robot)
+    sampler = _Sampler(robot, srdf, meshes or MeshPieces(), np.random.default_rng(0))
+    pairs = dict.fromkeys(_joined(robot), "Adjacent")
+    if sampler.is_free_at_home(pairs):
+        return {}
+    pairs |= dict.fromkeys(sampler.always(pairs), "Always")
+    pairs |= dict.fromkeys(sampler.gripping(pairs), "Default")
+    return sampler.free_home(pairs, _ignore)
+
+
 @dataclass(frozen=True, slots=True)
 class _Sampler:
     """Looks at random states of a robot.
@@ -97,7 +123,7 @@ class _Sampler:
         model = self._model(self.robot)
         collisions = self._collisions(model, known)
         counts: dict[Pair, int] = {}
-        for q in self._states(model, FIRST_SAMPLES):
+        for q in self._states(model, FIRST_SAMPLES, self.rng):
             for pair in _touching(collisions, q):
                 counts[pair] = counts.get(pair, 0) + 1
         return {pair for pair, count in counts.items() if count >= ALWAYS * FIRST_SAMPLES}
@@ -125,7 +151,7 @@ class _Sampler:
         found: set[Pair] = set()
         collisions = self._collisions(model, known)
         before = 0
-        for number, q in enumerate(self._states(model, samples)):
+        for number, q in enumerate(self._states(model, samples, self.rng)):
             if number % BATCH == 0 and len(found) > before:
                 before = len(found)
                 collisions = self._collisions(model, {**known, **dict.fromkeys(found, "")})
@@ -134,34 +160,65 @@ class _Sampler:
         return found
 
     def with_free_home(self, srdf: Srdf, warn: Warn) -> Srdf:
-        """Return the SRDF with the states home where nothing collides, near to where they are.
-
-        What collides is told, and also where there is no such state.
-        """
-        model = planning_model(self.robot, srdf, warn=_ignore)
-        positions: dict[str, float] = {}
-        for (_, name), state in model.states.items():
-            positions |= state if name == HOME else {}
-        home = np.array([positions.get(joint, 0.0) for joint in model.joints])
-        collisions = self._collisions(model, srdf.disabled)
-        contacts = collisions.contacts(home)
-        if not contacts:
+        """Return the SRDF with the states home where nothing collides, near to where they are."""
+        moved = self.free_home(srdf.disabled, warn)
+        if not moved:
             return srdf
-        reaches = np.linspace(0.0, 1.0, HOME_SAMPLES)
-        states = zip(reaches, self._states(model, HOME_SAMPLES), strict=True)
-        candidates = (home + reach * (q - home) for reach, q in states)
-        free = next((q for q in candidates if collisions.is_free(q)), None)
-        what = "set another state" if free is None else "home is moved to a state without contact"
-        for contact in contacts:
-            warn(f"at home {contact}: {what}; if the two may touch, disable their collisions")
-        if free is None:
-            return srdf
-        moved = {joint: (float(q),) for joint, q in zip(model.joints, free, strict=True)}
         renewed = {
-            key: {joint: moved[joint] for joint in state} if key[1] == HOME else state
+            key: {joint: (moved[joint],) for joint in state} if key[1] == HOME else state
             for key, state in srdf.states.items()
         }
         return replace(srdf, states=renewed)
+
+    def is_free_at_home(self, known: Mapping[Pair, str]) -> bool:
+        """Return whether no other pair touches at home."""
+        model = self._model(self.robot)
+        return self._collisions(model, known).is_free(self._home(model))
+
+    def free_home(self, known: Mapping[Pair, str], warn: Warn) -> dict[str, float]:
+        """Return positions of all joints where no other pair touches; empty if home is so.
+
+        As few joints as possible are moved. What collides is told; if it does in every state that
+        is looked at, the result is empty, too.
+        """
+        model = self._model(self.robot)
+        collisions, home = self._collisions(model, known), self._home(model)
+        contacts = collisions.contacts(home)
+        if not contacts:
+            return {}
+        free = self._free_near(home, model, collisions)
+        what = "set another state" if free is None else "home is moved to a state without contact"
+        for contact in contacts:
+            warn(f"at home {contact}: {what}; if the two may touch, disable their collisions")
+        return {} if free is None else dict(zip(model.joints, free.tolist(), strict=True))
+
+    def _home(self, model: PlanningModel) -> Array:
+        positions: dict[str, float] = {}
+        for (_, name), state in model.states.items():
+            positions |= state if name == HOME else {}
+        return np.array([positions.get(joint, 0.0) for joint in model.joints])
+
+    def _free_near(
+        self, home: Array, model: PlanningModel, collisions: CollisionModel
+    ) -> Array | None:
+        """Return a free state near home, with round numbers; the same ones for the same robot."""
+        rng = np.random.default_rng(0)
+        reaches = np.linspace(0.0, 1.0, HOME_SAMPLES)[:, None]
+        states = home + reaches * (np.array([*self._states(model, HOME_SAMPLES, rng)]) - home)
+        for clearance_m in (HOME_CLEARANCE_M, 0.0):
+
+            def is_free(q: Array, clearance_m: float = clearance_m) -> bool:
+                return collisions.free_count(q[None], clearance_m) == 1
+
+            if (free := next(filter(is_free, states), None)) is not None:
+                for index in range(len(home)):
+                    less = free.copy()
+                    less[index] = home[index]
+                    free = less if is_free(less) else free
+                rounded = np.where(free == home, home, np.round(free, HOME_DIGITS))
+                inside = np.clip(rounded, *self._limits(model))
+                return inside if is_free(inside) else free
+        return None
 
     def _model(self, robot: Robot) -> PlanningModel:
         return planning_model(robot, self.srdf, warn=_ignore)
@@ -171,14 +228,20 @@ class _Sampler:
         scene = PlanningScene(dict.fromkeys(model.joints, 0.0), allowed=allowed)
         return CollisionModel(model, scene, meshes=self.meshes)
 
-    def _states(self, model: PlanningModel, count: int) -> Iterator[Array]:
-        """Yield states of all joints, (n,); endless joints make one turn."""
+    def _limits(self, model: PlanningModel) -> tuple[Array, Array]:
+        """Return the least and greatest position of each joint; endless joints make one turn."""
         limits = [self.robot.joint(name).limit for name in model.joints]
         lower = np.array([limit.lower if limit else -np.inf for limit in limits])
         upper = np.array([limit.upper if limit else np.inf for limit in limits])
         lower = np.where(np.isfinite(lower), lower, -np.pi)
-        upper = np.where(np.isfinite(upper), upper, np.pi)
-        shares = self.rng.uniform(-AT_LIMITS / 2, 1.0 + AT_LIMITS / 2, (count, len(lower)))
+        return lower, np.where(np.isfinite(upper), upper, np.pi)
+
+    def _states(
+        self, model: PlanningModel, count: int, rng: np.random.Generator
+    ) -> Iterator[Array]:
+        """Yield states of all joints, (n,)."""
+        lower, upper = self._limits(model)
+        shares = rng.uniform(-AT_LIMITS / 2, 1.0 + AT_LIMITS / 2, (count, len(lower)))
         yield from lower + (upper - lower) * np.clip(shares, 0.0, 1.0)
 
 
@@ -232,4 +295,4 @@ def _grown_shape(collision: Collision) -> Collision:
 
 
 def _ignore(_sentence: str) -> None:
-    """Pass over what is said about limits, which do not matter here."""
+    """Pass over what does not matter here."""

@@ -11,7 +11,7 @@ from arm_planning.robot.build import planning_model
 from arm_planning.robot.srdf import Srdf, parse_srdf
 from arm_planning.scene.allowed_collisions import AllowedCollisions, allowed_collisions
 from arm_planning.scene.scene import PlanningScene
-from arm_planning.srdf_maker import make_srdf
+from arm_planning.srdf_maker import free_start, make_srdf
 
 CONFIG = "package://mycobot_moveit_config/config/mycobot_280"
 MYCOBOT = "package://mycobot_description/urdf/robots/mycobot_280.urdf.xacro"
@@ -71,8 +71,20 @@ def test_home_is_moved_away_from_what_collides_there():
     model = planning_model(parse_urdf(SPINNER), srdf, warn=lambda _: None)
     scene = PlanningScene(dict.fromkeys(model.joints, 0.0), allowed=allowed_collisions(srdf))
     home = model.states["arm", "home"]
-    assert CollisionModel(model, scene).is_free(np.array([home[joint] for joint in model.joints]))
-    assert 0.0 < max(map(abs, home.values())) < 1.0
+    q = np.array([home[joint] for joint in model.joints])
+    assert CollisionModel(model, scene).free_count(q[None], clearance_m=0.005) == 1
+    assert 0.0 < max(map(abs, q)) < 1.0
+    assert 0.0 in q, "joints that need not move stay"
+
+
+def test_a_robot_that_touches_itself_at_zero_starts_at_the_home_of_its_srdf():
+    start = free_start(parse_urdf(SPINNER))
+    assert {joint: (q,) for joint, q in start.items()} == made()[0].states["arm", "home"]
+
+
+def test_a_robot_that_is_free_at_zero_starts_there():
+    apart = robot(ball("base", 0.1), ball("arm", 0.1, x=0.5), joint("turn", "base", "arm"))
+    assert free_start(parse_urdf(apart)) == {}
 
 
 def test_a_robot_that_collides_everywhere_keeps_its_home():

@@ -7,6 +7,7 @@ import shlex
 
 import pytest
 from lxml import etree
+from robots import collision, joint, link, robot
 
 from arm_cli.main import main
 from arm_description import parse_urdf
@@ -117,6 +118,29 @@ def command_of(plan, name: str) -> tuple:
 def parameters_of(plan, name: str) -> str:
     words = command_of(plan, name)
     return "".join(word.text for word in words if isinstance(word, GeneratedFile))
+
+
+@pytest.mark.parametrize(
+    ("planning", "configuration", "moved"),
+    [("true", "", True), ("false", "", False), ("true", ".", False)],
+)
+def test_only_a_robot_that_plans_unconfigured_starts_where_it_is_free(
+    tmp_path, monkeypatch, planning, configuration, moved
+):
+    monkeypatch.chdir(tmp_path)
+    ball = collision("sphere", radius=0.1)
+    model = tmp_path / "folded.urdf"
+    model.write_text(
+        robot(
+            *(link(name, ball) for name in ("base", "arm", "hand")),
+            joint("shoulder", "base", "arm", xyz="0.25 0 0"),
+            joint("wrist", "arm", "hand", xyz="-0.15 0 0"),
+        )
+    )
+    (tmp_path / "kinematics.yaml").write_text("arm: {kinematics_solver_timeout: 0.1}")
+    given = {"planning": planning, "moveit_config": configuration}
+    plan = plan_of("sim.launch.py", model=str(model), **given)
+    assert ("initial_value" in parameters_of(plan, "arm_gazebo_node")) is moved
 
 
 def test_rviz_opens_if_it_is_installed(tmp_path):
