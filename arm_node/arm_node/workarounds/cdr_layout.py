@@ -25,7 +25,8 @@ class CdrLayout:
     """Where the parts of a message stand. It needs no ROS: a message is whatever lists its fields.
 
     Attributes:
-        doubles: offset of each float64, by its value; of equal ones the last.
+        begins: offset of the first number of each field of numbers, by the `id` of the message that
+            has the field and the field's name; the field's other numbers follow without a gap.
         fixed: begin and end of each text and each length.
         end: number of bytes.
         is_known: whether it has only parts whose size is known: all but wide text.
@@ -33,7 +34,7 @@ class CdrLayout:
 
     def __init__(self, message: Any) -> None:
         """Walk through all its fields."""
-        self.doubles: dict[float, int] = {}
+        self.begins: dict[tuple[int, str], int] = {}
         self.fixed: list[tuple[int, int]] = []
         self.end = HEADER_BYTES
         self.is_known = True
@@ -42,43 +43,37 @@ class CdrLayout:
     def _add_message(self, message: Any) -> None:
         fields = message.get_fields_and_field_types()
         for name, kind in fields.items():
-            self._add(getattr(message, name), kind)
+            values: Any = [getattr(message, name)]
+            if array := _ARRAY.fullmatch(kind):
+                (values,), kind = values, array[2] or array[3]
+                if array["is_long"]:
+                    self._add_length()
+            if kind in _SIZES:
+                self.begins[id(message), name] = self._add_numbers(len(values), _SIZES[kind])
+            else:
+                for value in values:
+                    self._add(value, kind)
         if not fields:
-            self._aligned(1)
+            self._add_numbers(1, 1)
 
     def _add(self, value: Any, kind: str) -> None:
-        array = _ARRAY.fullmatch(kind)
-        if array is not None:
-            if array["is_long"]:
-                self._add_length()
-            self._add_elements(value, array[2] or array[3])
-        elif "/" in kind:
+        """Add a message or a text."""
+        if "/" in kind:
             self._add_message(value)
         elif kind.startswith("string"):
             self._add_length()
             begin, self.end = self.end, self.end + len(value.encode()) + 1
             self.fixed.append((begin, self.end))
-        elif kind in _SIZES:
-            begin = self._aligned(_SIZES[kind])
-            if kind == "double":
-                self.doubles[value] = begin
         else:
             self.is_known = False
 
-    def _add_elements(self, values: Any, kind: str) -> None:
-        # Pictures and points have millions of bytes.
-        if kind in _SIZES and kind != "double" and len(values):
-            self._aligned(_SIZES[kind])
-            self.end += (len(values) - 1) * _SIZES[kind]
-        else:
-            for value in values:
-                self._add(value, kind)
-
     def _add_length(self) -> None:
-        self.fixed.append((self._aligned(4), self.end))
+        self.fixed.append((self._add_numbers(1, 4), self.end))
 
-    def _aligned(self, size: int) -> int:
-        """Add a number of this many bytes and return where it begins."""
+    def _add_numbers(self, count: int, size: int) -> int:
+        """Add numbers of this many bytes each, and return where they begin."""
+        if not count:
+            return self.end
         begin = self.end + (HEADER_BYTES - self.end) % size
-        self.end = begin + size
+        self.end = begin + count * size
         return begin

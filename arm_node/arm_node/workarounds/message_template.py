@@ -5,16 +5,13 @@ and serialise it costs more than the rest of the cycle. Names and lengths never 
 number stays at its place in the bytes, and a new value is a write of eight bytes. Works around
 https://github.com/ros2/rclpy/issues/836; made for rclpy 7.1 and 9.1.
 
-The places are found by experiment: every number is set to a unique mark, the message is serialised,
-and each mark must be in exactly one aligned word. This is done twice with different marks. It
-assumes nothing about the encoding: a message whose numbers are not in aligned words is set and
-serialised by rclpy, as is every message if the workaround is off. Marks are not used again for the
-next message, because its padding bytes may contain marks from an earlier message's memory.
+The places follow from the encoding, see `cdr_layout`, and are tried out before they are used. A
+message in another encoding is set and serialised by rclpy, as is every message if the workaround is
+off.
 """
 
-import itertools
 import logging
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -35,10 +32,6 @@ from arm_node.workarounds.message_fields import (
 )
 from arm_node.workarounds.switch import is_on
 
-# Marks: tag << 32 | number, which are small normal float64s; tag << 20 | number, positive int32s.
-_TAGS_64 = itertools.cycle(range(0x3FA00000, 0x3FB00000))
-_TAGS_32 = itertools.cycle(range(0x100, 0x800))
-_PASSES = 2
 _SECONDS_END = 2**31
 
 logger = logging.getLogger(__name__)
@@ -183,23 +176,23 @@ class _SerializedLayout:
         Raises:
             MessageLayoutError: the numbers cannot be found.
         """
-        self._serialized = serialized(prototype)
-        self._size = len(self._serialized)
-        self.message = deserialize_message(self._serialized, type(prototype))
-        words = -(-(self._size - HEADER_BYTES) // 8)
+        data = serialized(prototype)
+        self.message = deserialize_message(data, type(prototype))
         # The body starts at a multiple of 8, so that all its views are aligned.
-        storage = np.zeros(8 + 8 * words, dtype=np.uint8)
-        start = 8 - HEADER_BYTES
-        self._payload = storage[start : start + self._size]
-        self._payload[:] = np.frombuffer(self._serialized, dtype=np.uint8)
+        storage = np.zeros(8 + 8 * -(-(len(data) - HEADER_BYTES) // 8), dtype=np.uint8)
+        self._payload = storage[8 - HEADER_BYTES :][: len(data)]
         self.float64 = storage[8:].view(np.float64)
         self.int32 = storage[8:].view(np.int32)
-        doubles = self._locate(float64_fields, np.dtype(np.uint64), _TAGS_64, 32)
-        times = self._locate(time_fields, np.dtype(np.uint32), _TAGS_32, 20)
+        layout = CdrLayout(self.message)
+        if not layout.is_known or not data.startswith(LITTLE_ENDIAN):
+            raise MessageLayoutError(f"a {type(prototype).__name__} is not in the known encoding")
         self.places = {
-            **_split(float64_fields(self.message), doubles),
-            **_split(time_fields(self.message), times),
+            field.key: (layout.begins[field.key] - HEADER_BYTES) // size + np.arange(field.size)
+            for fields, size in ((float64_fields, 8), (time_fields, 4))
+            for field in fields(self.message)
         }
+        self._try_out(data)
+        self._payload[:] = np.frombuffer(data, dtype=np.uint8)
 
     def to_bytes(self) -> bytes:
         return self._payload.tobytes()
@@ -207,40 +200,21 @@ class _SerializedLayout:
     def publish(self, publisher: Publisher) -> None:
         publisher.publish(self._payload.tobytes())
 
-    def _locate(
-        self,
-        fields_of: Callable[[Message], Iterator[Field]],
-        word: np.dtype[Any],
-        tags: Iterator[int],
-        shift: int,
-    ) -> NDArray[np.intp]:
-        found: NDArray[np.bool_] | None = None
-        count = 0
-        marked = np.empty(0, dtype=word)
-        for tag in itertools.islice(tags, _PASSES):
-            message = deserialize_message(self._serialized, type(self.message))
-            count = _mark(fields_of(message), word, tag << shift)
-            marked = self._words(serialized(message), word)
-            here = marked >> shift == tag
-            # Text or a length may equal one mark, but not both.
-            found = here if found is None else found & here
-        where = np.flatnonzero(found) if found is not None else np.empty(0, dtype=np.intp)
-        numbers = marked[where] & word.type((1 << shift) - 1)
-        if not np.array_equal(np.sort(numbers), np.arange(count)):
-            raise MessageLayoutError(
-                f"cannot find the {count} marked numbers of {type(self.message).__name__} in its "
-                "bytes"
-            )
-        return where[np.argsort(numbers)]
-
-    def _words(self, serialized: bytes, word: np.dtype[Any]) -> NDArray[Any]:
-        if len(serialized) != self._size:
-            raise MessageLayoutError(
-                f"a {type(self.message).__name__} has {self._size} bytes at first, then "
-                f"{len(serialized)}"
-            )
-        count = (self._size - HEADER_BYTES) // word.itemsize
-        return np.frombuffer(serialized, dtype=word, offset=HEADER_BYTES, count=count)
+    def _try_out(self, data: bytes) -> None:
+        """Raise `MessageLayoutError` unless rclpy writes each number where it is expected."""
+        message = deserialize_message(data, type(self.message))
+        for fields in (float64_fields, time_fields):
+            _count_up(fields(message))
+        marked = serialized(message)
+        if len(marked) == len(data):
+            self._payload[:] = np.frombuffer(marked, dtype=np.uint8)
+        for fields, array in ((float64_fields, self.float64), (time_fields, self.int32)):
+            where = [self.places[field.key] for field in fields(self.message)]
+            found = array[np.concatenate([np.empty(0, np.intp), *where])]
+            if not np.array_equal(found, np.arange(1, len(found) + 1)):
+                raise MessageLayoutError(
+                    f"the numbers of a {type(message).__name__} are not where they should be"
+                )
 
 
 class _PlainLayout:
@@ -292,11 +266,10 @@ def _split(fields: Iterable[Field], where: NDArray[np.intp]) -> dict[tuple[int, 
     return parts
 
 
-def _mark(fields: Iterator[Field], word: np.dtype[Any], first: int) -> int:
-    """Set the fields' numbers to the marks `first`, `first` + 1 and so on; return how many."""
-    number = 0
+def _count_up(fields: Iterable[Field]) -> None:
+    """Set the fields' numbers to 1, 2 and so on."""
+    number = 1
     for field in fields:
-        marks = np.arange(first + number, first + number + field.size, dtype=word)
-        field.set_numbers(marks.view(np.float64).tolist() if word.itemsize == 8 else marks.tolist())
+        kind = type(field.numbers[0]) if field.size else float
+        field.set_numbers([kind(each) for each in range(number, number + field.size)])
         number += field.size
-    return number

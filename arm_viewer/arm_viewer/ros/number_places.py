@@ -26,13 +26,19 @@ def number_places(data: bytes, message_class: type) -> dict[str, NumberPlace]:
     except Exception:
         # rclpy raises any kind of error at bytes that are not a message of the type.
         return {}
+    fields = list(float64_fields(message))
     count = 0
-    for found in float64_fields(message):
+    for found in fields:
         found.set_numbers([MARK * (count + n + 1) for n in range(found.size)])
         count += found.size
     layout = CdrLayout(message)
     if not layout.is_known or layout.end > len(data):
         return {}
+    offsets = {
+        number: layout.begins[found.key] + 8 * n
+        for found in fields
+        for n, number in enumerate(found.numbers)
+    }
     pattern = np.frombuffer(data, dtype=np.uint8)
     is_fixed = np.zeros(len(data), dtype=bool)
     is_fixed[: len(LITTLE_ENDIAN)] = True
@@ -40,7 +46,7 @@ def number_places(data: bytes, message_class: type) -> dict[str, NumberPlace]:
         is_fixed[begin:end] = True
     places: dict[str, NumberPlace] = {}
     for path in islice(numbers_in(message), MAX_NUMBERS):
-        offset = layout.doubles.get(reader(parse_curve(f"/topic.{path}"))(message))
+        offset = offsets.get(reader(parse_curve(f"/topic.{path}"))(message))
         if offset is not None:
             places[path] = NumberPlace(offset, pattern, is_fixed)
     return places

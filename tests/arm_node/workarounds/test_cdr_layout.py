@@ -45,12 +45,15 @@ def test_it_ends_where_rosbags_ends():
         assert len(STORE.serialize_cdr(STORE.deserialize_cdr(data, name), name)) == end, name
 
 
-def test_float64s_stand_where_it_says():
+def test_numbers_stand_where_it_says():
     message = JointState(name=["a", "b"], position=[1.5, 2.5], effort=[3.5, 4.5])
-    data = serialize_message(message)
-    doubles = CdrLayout(message).doubles
-    assert list(doubles) == [1.5, 2.5, 3.5, 4.5]
-    assert all(np.frombuffer(data, "<f8", 1, at)[0] == value for value, at in doubles.items())
+    message.header.stamp.nanosec = 7
+    data, begins = serialize_message(message), CdrLayout(message).begins
+    for field, values in (("position", [1.5, 2.5]), ("velocity", []), ("effort", [3.5, 4.5])):
+        at = begins[id(message), field]
+        assert np.frombuffer(data[at:], "<f8", len(values)).tolist() == values
+    at = begins[id(message.header.stamp), "nanosec"]
+    assert int.from_bytes(data[at : at + 4], "little") == 7
 
 
 @pytest.mark.parametrize(

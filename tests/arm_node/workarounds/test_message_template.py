@@ -8,7 +8,7 @@ import pytest
 from builtin_interfaces.msg import Duration
 from control_msgs.msg import DynamicJointState, InterfaceValue
 from geometry_msgs.msg import PoseWithCovariance, TransformStamped
-from rclpy.serialization import deserialize_message, serialize_message
+from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import BatteryState, CameraInfo, JointState
 from std_msgs.msg import Float64MultiArray, String
@@ -16,7 +16,7 @@ from tf2_msgs.msg import TFMessage
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from arm_node.workarounds import message_template
-from arm_node.workarounds.cdr_layout import HEADER_BYTES, LITTLE_ENDIAN
+from arm_node.workarounds.cdr_layout import HEADER_BYTES, LITTLE_ENDIAN, CdrLayout
 from arm_node.workarounds.message_fields import MessageLayoutError
 from arm_node.workarounds.message_template import MessageTemplate
 
@@ -233,51 +233,13 @@ def test_values_in_several_places_have_no_view():
         MessageTemplate(tf_message(2)).doubles("transforms[*].transform")
 
 
-class DirtyMemory:
-    """Serialises into what the pass before last left behind, as memory that is used again does."""
-
-    def __init__(self, padding: dict[tuple[int, ...], list[int]]) -> None:
-        """Know the padding, as bytes, by the lengths of position and velocity."""
-        self._padding = padding
-        self._left: list[bytes] = [b"", b""]
-
-    def serialize(self, message: JointState) -> bytes:
-        data = bytearray(serialize_message(message))
-        before = self._left.pop(0)
-        if before:
-            for place in self._padding[len(message.position), len(message.velocity)]:
-                data[place] = before[place]
-        self._left.append(bytes(data))
-        return bytes(data)
-
-
-def padding_of(message: JointState) -> list[int]:
-    """Return which bytes lie between the lengths of position and velocity and their numbers."""
-    template = MessageTemplate(message)
-    words = [int(template.indices(path)[0]) for path in ("position", "velocity")]
-    return [HEADER_BYTES + 8 * word - 4 + byte for word in words for byte in range(4)]
-
-
-def test_marks_left_in_memory_by_another_message_do_no_harm(monkeypatch):
-    # Of the same size: where one has a position, the other has padding.
-    first = JointState(position=[0.0, 0.0], velocity=[0.0])
-    second = JointState(position=[0.0], velocity=[0.0, 0.0])
-    padding = {
-        (len(message.position), len(message.velocity)): padding_of(message)
-        for message in (first, second)
-    }
-    templates = [MessageTemplate(message) for message in (first, second)]
-    expected = [list(template.indices("position")) for template in templates]
-    dirty = DirtyMemory(padding)
-    monkeypatch.setattr(message_template, "serialize_message", dirty.serialize)
-    assert [list(template.indices("position")) for template in templates] == expected
-
-
-@pytest.fixture(params=["off by hand", "not to be found"])
+@pytest.fixture(params=["off by hand", "another encoding", "numbers elsewhere"])
 def without_the_workaround(request, monkeypatch):
     """Messages are laid out by rclpy, for one of two reasons."""
     if request.param == "off by hand":
         monkeypatch.setattr(message_template, "is_on", lambda _name: False)
+    elif request.param == "numbers elsewhere":
+        monkeypatch.setattr(message_template, "CdrLayout", ShiftedLayout)
     else:
         serialize = message_template.serialize_message
         monkeypatch.setattr(
@@ -286,6 +248,15 @@ def without_the_workaround(request, monkeypatch):
         monkeypatch.setattr(
             message_template, "deserialize_message", lambda data, kind: read_scrambled(data, kind)
         )
+
+
+class ShiftedLayout(CdrLayout):
+    """Says that each field begins where the field before it does."""
+
+    def __init__(self, message: Any) -> None:
+        super().__init__(message)
+        before = [HEADER_BYTES, *self.begins.values()]
+        self.begins = dict(zip(self.begins, before, strict=False))
 
 
 def scrambled(data: bytes) -> bytes:
