@@ -33,9 +33,7 @@ class PhysicsTiming:
 def physics_timing(update_rate_hz: float, fixed_step_s: float | None = None) -> PhysicsTiming:
     """Return the largest physics step up to `MAX_STEP_S` that divides the control period.
 
-    Args:
-        update_rate_hz: control rate.
-        fixed_step_s: the step that the user fixed; it must divide the period. None to choose one.
+    A step that the user fixed, `fixed_step_s`, must divide the period.
 
     Raises:
         TimingError: the rate is not above 0, the fixed step does not divide the period, or a step

@@ -57,12 +57,7 @@ class Copies(Protocol):
 
 
 class CommandBounds:
-    """The lowest and highest command of every drive.
-
-    Args:
-        simulation: the simulation of the drives.
-        hardware: the hardware components, which know the bounds of claimed interfaces.
-    """
+    """The lowest and highest command of each drive, from the interfaces that are claimed."""
 
     def __init__(self, simulation: Physics, hardware: Sequence[SimulatedHardware]) -> None:
         count = len(simulation.servo.joints)

@@ -55,11 +55,7 @@ def check_installed() -> None:
 
 @contextmanager
 def explained(copies: int, device: str) -> Iterator[None]:
-    """Raise what MuJoCo Warp raises as a BatchError that says what it means.
-
-    Args:
-        copies: number of copies, for the message.
-        device: Warp's name of the device.
+    """Raise what MuJoCo Warp raises on one of its devices as a BatchError that says what it means.
 
     Raises:
         BatchError: the device has too little memory, or MuJoCo Warp cannot simulate the model.

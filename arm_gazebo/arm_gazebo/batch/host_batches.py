@@ -174,11 +174,7 @@ class PhysicsBatch:
 class SerialBatch:
     """Copies of a simulation's robot and world, with its drives; see `Copies`.
 
-    Args:
-        simulation: a simulation; the copies take over its model, its start and the modes of its
-            drives.
-        bounds: bounds of the commands.
-        copies: number of copies.
+    They take over the simulation's model, its start and the modes of its drives.
     """
 
     def __init__(self, simulation: Physics, bounds: CommandBounds, copies: int) -> None:

@@ -10,12 +10,7 @@ CHANNELS = 4
 
 
 def mark_limits(depth: NDArray[np.float32], sensor: CameraSensor) -> None:
-    """Mark distances out of range as REP 117 requires, in place.
-
-    Args:
-        depth: distances in m. Below the near clip they become -inf, beyond the far clip inf.
-        sensor: the camera.
-    """
+    """Mark distances in m in place, as REP 117 requires: too near becomes -inf, too far inf."""
     depth[depth < sensor.near] = -np.inf
     depth[depth > sensor.far] = np.inf
 

@@ -30,12 +30,7 @@ class NoiseBank:
     """
 
     def __init__(self, sensor: CameraSensor, seed: int) -> None:
-        """Compute the bank: 6 bytes per pixel plus 2 MB, and 0.1 s for 800x800.
-
-        Args:
-            sensor: the camera, with size, mean and standard deviation.
-            seed: seed of the run; any integer.
-        """
+        """Compute the bank of a camera: 6 bytes per pixel plus 2 MB, and 0.1 s for 800x800."""
         import cv2
 
         self._add, self._subtract = cv2.add, cv2.subtract
@@ -105,13 +100,7 @@ class FrameDrawing:
     def __init__(
         self, sensors: Sequence[CameraSensor], open_renderer: "Callable[[], Renderer]", seed: int
     ) -> None:
-        """Prepare without MuJoCo and OpenGL.
-
-        Args:
-            sensors: the cameras.
-            open_renderer: called once, when the first frame is wanted.
-            seed: seed of the noise.
-        """
+        """Prepare without MuJoCo and OpenGL; the first wanted frame calls `open_renderer`."""
         self._sensors = tuple(sensors)
         self._open_renderer = open_renderer
         self._seed = seed

@@ -96,12 +96,7 @@ class CameraFeed:
         return self._schedule
 
     def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
-        """Send the state if a camera frame is due at this tick. Loop thread only; never waits.
-
-        Args:
-            time_s: simulation time of the state.
-            data: the state.
-        """
+        """Send the state if a camera frame is due at this tick. Loop thread only; never waits."""
         if self._schedule.nothing_due(time_s):
             return
         now_s = self._clock()

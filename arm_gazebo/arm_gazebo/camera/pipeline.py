@@ -156,13 +156,9 @@ class CameraPipeline:
         open_renderer: Callable[[], "Renderer"],
         seed: int = 0,
     ) -> None:
-        """Connect cameras with their sinks.
+        """Connect cameras, in the order of the frames' indices, with the publisher of each.
 
-        Args:
-            sensors: the cameras, in the order of the frames' indices.
-            sinks: the publisher of each camera.
-            open_renderer: called once, when the first image is wanted.
-            seed: seed of the noise.
+        `open_renderer` is called once, when the first image is wanted.
         """
         self.time_s = 0.0
         self.statistics = tuple(CameraStatistics() for _ in sensors)

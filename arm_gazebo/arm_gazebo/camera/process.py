@@ -158,15 +158,7 @@ class CameraProcess:
         clock: Callable[[], float] = time.monotonic,
         spawn: Spawn = subprocess.Popen,
     ) -> None:
-        """Prepare without starting a process.
-
-        Args:
-            settings: settings of each process; backends that fail are added to `excluded`.
-            ros_arguments: the arguments after --ros-args, such as remappings.
-            environ: the simulation's environment.
-            clock: monotonic time in s.
-            spawn: starts a process, like subprocess.Popen.
-        """
+        """Prepare without starting a process; backends that fail join `settings.excluded`."""
         self._settings = settings
         self._ros_arguments = tuple(ros_arguments)
         self._environ = environ

@@ -120,12 +120,9 @@ class CheckResult(Generic[SummaryT]):
 def check_description(
     urdf: str, source: str, options: BuildOptions = DEFAULT_OPTIONS
 ) -> CheckResult[RobotSummary]:
-    """Check a description.
+    """Check the text of a URDF, with xacro expanded; messages call it `source`.
 
-    Args:
-        urdf: the URDF text, with xacro expanded.
-        source: name of the text in messages.
-        options: options of the model; `strict` makes an unavailable mesh an error.
+    `options.strict` makes an unavailable mesh an error.
     """
     report = BuildReport()
     try:

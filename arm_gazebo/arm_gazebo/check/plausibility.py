@@ -159,11 +159,8 @@ def mesh_sizes(robot: Robot, built: BuiltModel) -> Iterator[Finding]:
     """Yield the links whose meshes are too small to see, or far too large.
 
     A mesh in millimetres without a scale, or one in metres with a scale of 0.001, is wrong by a
-    factor of a thousand. The distances between joints, which are always in metres, reveal it.
-
-    Args:
-        robot: the description.
-        built: its model; a mesh that was replaced by a box does not count.
+    factor of a thousand. The distances between joints, which are always in metres, reveal it. A
+    mesh that was replaced by a box does not count.
     """
     for link in robot.links:
         size, distance = _largest_mesh(link, built), _reach(robot, link)

@@ -59,11 +59,6 @@ class BrakingLaw:
 
     Each sum is in the order of the joints, so that one state and many give the same bits.
 
-    Args:
-        model: a model with the joints.
-        tuning: their tuning in this model.
-        dofs: their degrees of freedom, shape (n,).
-
     Attributes:
         entries: indices in MuJoCo's sparse matrix of the inertia that joint j makes joint i feel,
             shape (layers, n, n); the layers add up.
@@ -146,11 +141,7 @@ class BrakingLaw:
     def parts_of_many(self, inertia: Array, room: Array, floors: Array, needs: Array) -> Array:
         """Return what `parts` returns for each of many states, with the same bits.
 
-        Args:
-            inertia: shape (states, nC).
-            room: shape (states, n).
-            floors: shape (n,).
-            needs: shape (states, n).
+        Shapes: `inertia` (states, nC), `room` and `needs` (states, n), `floors` (n,).
         """
         felt = self.felt(inertia) * room[:, None, :]
         own = np.arange(felt.shape[-1])
@@ -231,11 +222,7 @@ def slow_joints(
 ) -> Iterator[tuple[str, str]]:
     """Yield the joints that are slow in most poses, with a sentence for each.
 
-    Args:
-        model: the model, tuned; its rotors are not set.
-        joints: the driven joints.
-        tuning: their tuning.
-        qpos: a pose for everything that is not driven, shape (nq,).
+    The rotors of the model are not set; `qpos` (nq,) is a pose for everything that is not driven.
     """
     if not joints:
         return

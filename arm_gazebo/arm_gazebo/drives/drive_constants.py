@@ -74,9 +74,7 @@ class DriveConstants:
 def drive_constants(model: mujoco.MjModel, servo: Servo) -> DriveConstants:
     """Return the constants of a servo's joints, in their present modes.
 
-    Args:
-        model: a model with the servo's joints, and with the gains of their modes.
-        servo: the servo.
+    The model has the servo's joints, and the gains of their modes.
     """
     joints, tuning, timing = servo.joints, servo.tuning, servo.timing
     bounds = [tuning.bounds(index) for index in range(len(joints))]

@@ -174,11 +174,9 @@ class DrivenJoint:
         self._velocity = 0.0
 
     def limit_effort(self, limit: float, share: float) -> None:
-        """Plan with less effort than the joint's own limit.
+        """Plan with less effort, N m or N, than the joint's own limit.
 
-        Args:
-            limit: largest effort, N m or N.
-            share: fraction of the normal braking deceleration that this effort allows.
+        The share is the fraction of the normal braking deceleration that this effort allows.
         """
         self.effort_limit = limit
         self.sure_braking = share * self._bounds.braking
@@ -275,11 +273,7 @@ class DrivenJoint:
     def plan(self, position: float, velocity: float, inertia: float, gravity: float) -> bool:
         """Advance the set-point by one control period; return whether it moves.
 
-        Args:
-            position: present position of the joint.
-            velocity: present velocity of the joint.
-            inertia: inertia of the joint in this pose.
-            gravity: effort against gravity and Coriolis forces in this state.
+        All are those of the joint at present; `gravity` is an effort and includes Coriolis forces.
         """
         setpoint = self.setpoint
         lead = setpoint.position - position

@@ -36,12 +36,7 @@ class InertiaProduct:
         return tuple((row, entry, *sources[dof]) for row, entry, dof in self._terms)
 
     def __call__(self, inertia: Array, gains: Array) -> Array:
-        """Return the products, shape (states, nv).
-
-        Args:
-            inertia: MuJoCo's `M` of each state, shape (states, nC).
-            gains: inputs of `spread`, shape (states, n).
-        """
+        """Return the products (states, nv) of MuJoCo's `M` (states, nC) and `gains` (states, n)."""
         # One column after the other: contiguous, so that each operation is one pass.
         entries, inputs = np.ascontiguousarray(inertia.T), np.ascontiguousarray(gains.T)
         motion = {dof: inputs[column] * factor for dof, column, factor in self._motions}

@@ -84,13 +84,7 @@ class ServoBatch:
         self._all_servoed = bool(self._servoed.all())
 
     def restart(self, rows: NDArray[np.intp], qpos: Array, qvel: Array) -> None:
-        """Restart some copies from their state, as `Servo.reset` does.
-
-        Args:
-            rows: indices of the copies.
-            qpos: their state, shape (len(rows), nq).
-            qvel: shape (len(rows), nv).
-        """
+        """Restart copies from states (rows, nq) and (rows, nv), as `Servo.reset` does."""
         position = qpos[:, self._addresses]
         limit = self._velocity_limit
         velocity = np.minimum(np.maximum(qvel[:, self._dofs], -limit), limit)
@@ -136,11 +130,8 @@ class ServoBatch:
     def update(self, qpos: Array, qvel: Array, inertia: Array, bias: Array) -> None:
         """Drive the joints of all copies for one control period; see `Servo.update`.
 
-        Args:
-            qpos: present positions, shape (copies, nq).
-            qvel: present velocities, shape (copies, nv).
-            inertia: MuJoCo's sparse inertia matrices of the last step, shape (copies, nC).
-            bias: its `qfrc_bias` of the last step, shape (copies, nv).
+        Shapes: `qpos` (copies, nq), `qvel` (copies, nv); MuJoCo's sparse `M` (copies, nC) and
+        `qfrc_bias` (copies, nv) are those of the last step.
         """
         self._ticks += 1
         rows = self._awake(qpos)

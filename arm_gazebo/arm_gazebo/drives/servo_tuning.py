@@ -221,13 +221,7 @@ def tuned_for_gravity(
 
 
 def rederive(model: mujoco.MjModel, joints: Sequence[RobotJoint], tuning: ServoTuning) -> None:
-    """Let MuJoCo derive its constants again after masses have changed; armatures stay as they are.
-
-    Args:
-        model: the model that runs.
-        joints: the driven joints.
-        tuning: their tuning in this model.
-    """
+    """Let MuJoCo derive its constants again after masses have changed; armatures stay."""
     dofs = [joint.dof_address for joint in joints]
     driven = [*dofs, *(follower for pairs in tuning.gears for follower, _ in pairs)]
     present = model.dof_armature[driven]

@@ -59,10 +59,8 @@ class CommandStreams:
     def take(self, commands: Array, ticks: Integers, period_s: float) -> None:
         """Take the commands of a control period; see `CommandStream.command`.
 
-        Args:
-            commands: shape (copies, joints); a command equal to the last one has no effect.
-            ticks: number of the control period of each copy, shape (copies, 1).
-            period_s: control period.
+        A command equal to the last one has no effect. Shapes: commands (copies, joints), the
+        numbers of the copies' control periods (copies, 1).
         """
         changed = commands != self.command
         if not changed.any():
@@ -81,12 +79,7 @@ class CommandStreams:
         self.velocity[step] = 0.0
 
     def advance(self, rows: NDArray[np.bool_] | None, period_s: float) -> None:
-        """Advance some copies by one control period; see `CommandStream.advance`.
-
-        Args:
-            rows: which copies, shape (copies, 1); None for all.
-            period_s: control period.
-        """
+        """Advance copies, those in `rows` (copies, 1) or all; see `CommandStream.advance`."""
         if not (self.left.any() or self.velocity.any()):
             return
         moves, arrives, rests = self.left > 1, self.left == 1, self.left == 0
@@ -110,16 +103,7 @@ def approach(
 ) -> tuple[Array, Array]:
     """Return positions and velocities after a control period; see `Setpoint.approach`.
 
-    Args:
-        position: positions of the set-points, shape (copies, joints), as all arrays or
-            broadcast to it.
-        start_velocity: their velocities.
-        target: positions of the targets at the end of this period; may be infinite.
-        target_velocity: velocities of the targets; 0 for fixed targets.
-        speed: highest speeds.
-        acceleration: accelerations that the joints can reach now.
-        braking: decelerations that stops are planned with.
-        period_s: control period.
+    All arrays have the shape (copies, joints), or are broadcast to it.
     """
     followed = np.minimum(np.maximum(target_velocity, -speed), speed)
     gap = target - position
@@ -151,14 +135,7 @@ def held_back(
 ) -> tuple[Array, Array]:
     """Return set-points that do not run ahead of joints that something holds or drags.
 
-    See `DrivenJoint.plan`.
-
-    Args:
-        position: positions of the set-points, shape (copies, joints).
-        velocity: their velocities.
-        joint_position: positions of the joints.
-        joint_velocity: their velocities.
-        slack: largest distance of a set-point from its joint, shape (joints,).
+    See `DrivenJoint.plan`. Shapes: (copies, joints), but (joints,) of `slack`.
     """
     lead = position - joint_position
     ahead, behind = lead > slack, lead < -slack

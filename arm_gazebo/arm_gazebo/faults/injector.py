@@ -24,9 +24,6 @@ class FaultInjector:
 
     A fault changes the run through its inputs, so a recording of the run contains the fault.
 
-    Args:
-        run: the run.
-
     Attributes:
         active: the faults that have begun and not ended.
     """

@@ -67,13 +67,7 @@ class WorkerProcess:
     """
 
     def __init__(self, module: str, name: str, spawn: Spawn = subprocess.Popen) -> None:
-        """Prepare without starting a process.
-
-        Args:
-            module: the module that `python -m` runs.
-            name: the name of the process in the log.
-            spawn: starts a process, like subprocess.Popen.
-        """
+        """Prepare `python -m MODULE` without starting it; the log calls it by the name."""
         self.name = name
         self._module = module
         self._spawn = spawn

@@ -116,14 +116,9 @@ class StateFeed:
             self._offer_model()
 
     def send(self, time_s: float, frames: tuple[FrameDue, ...], data: mujoco.MjData) -> bool:
-        """Send a state without waiting; return False if it is lost.
+        """Send a state with the camera frames to render from it; return False if it is lost.
 
-        Loop thread only, and only while `flowing`.
-
-        Args:
-            time_s: simulation time of the state.
-            frames: camera frames to render from it.
-            data: the state.
+        Never waits. Loop thread only, and only while `flowing`.
         """
         return self._channel.send_snapshot(
             CameraSnapshot(

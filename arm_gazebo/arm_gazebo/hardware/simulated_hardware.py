@@ -68,12 +68,8 @@ class SimulatedHardware:
     """A hardware component of the robot description, driven by the simulation's servos.
 
     Implements `arm_control.Hardware`; call every method on the loop thread. The owner calls
-    `Physics.advance` between `write` and `read`.
-
-    Args:
-        simulation: the simulation of the joints.
-        info: the component. Interfaces that cannot be simulated are left out and logged.
-        sensors: the robot's sensors.
+    `Physics.advance` between `write` and `read`. Interfaces of the component that cannot be
+    simulated are left out and logged.
     """
 
     modes = tuple(MODES)

@@ -23,11 +23,6 @@ class SimulatedSensor:
 
     Attributes:
         channels: names of its values, with the sensor's in front: imu/angular_velocity.x.
-
-    Args:
-        simulation: its model contains the sensor.
-        description: the sensor in the robot description.
-        seed: seed of the run's noise.
     """
 
     def __init__(self, simulation: "Physics", description: LinkSensor, seed: int = 0) -> None:
@@ -85,11 +80,7 @@ class SensorStates:
         self.names = tuple(names)
 
     def fill(self, states: NDArray[np.float64]) -> None:
-        """Write the present readings.
-
-        Args:
-            states: in the order of `names`, shape (n,).
-        """
+        """Write the present readings, in the order of `names`, shape (n,)."""
         for sensor, where, which in self._parts:
             states[where] = sensor.read()[which]
 

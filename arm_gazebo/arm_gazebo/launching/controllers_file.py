@@ -44,10 +44,6 @@ class StartableControllers:
 def substitute_arguments(path: Path, arguments: Mapping[str, str]) -> Controllers:
     """Substitute the robot's xacro arguments in a file; return the path if it has none to fill.
 
-    Args:
-        path: a parameter file in ros2_control's format.
-        arguments: values by name.
-
     Raises:
         SimSettingsError: the file cannot be read, or names an unknown argument.
     """
@@ -68,10 +64,6 @@ def startable_controllers(
     controllers: Controllers, known_types: frozenset[str]
 ) -> StartableControllers:
     """Return the controllers of a file that can be active together.
-
-    Args:
-        controllers: a parameter file in ros2_control's format, or its content.
-        known_types: controller types that can be loaded.
 
     Raises:
         SimSettingsError: the file cannot be read, or names no controllers.
@@ -104,11 +96,7 @@ def controllers_in_namespace(namespace: str, controllers: Controllers) -> Mappin
     """Return the content of a controllers' file with its nodes in a namespace.
 
     Nodes that the file itself puts into a namespace stay there. "/**" is limited to this namespace,
-    because the process also has the other robots' nodes.
-
-    Args:
-        namespace: without leading or trailing slash.
-        controllers: the file, or its content.
+    because the process also has the other robots' nodes. The namespace has no slash at either end.
 
     Raises:
         SimSettingsError: the file cannot be read, or names no controllers.
@@ -142,10 +130,6 @@ def _content(text: str, path: Path) -> Mapping[str, Any]:
 
 def checked_controllers(content: object, source: str) -> Mapping[str, Any]:
     """Return the parameters by node, flattened down to `ros__parameters`.
-
-    Args:
-        content: the content of a controllers' file.
-        source: what it is from, for the message.
 
     Raises:
         SimSettingsError: it names no controllers.

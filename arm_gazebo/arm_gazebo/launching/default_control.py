@@ -109,9 +109,7 @@ def with_hardware(urdf: str, robot: "Robot") -> str:
 def default_controllers(joints: HardwareJoints, commander: str = COMMANDER) -> tuple[str, ...]:
     """Return the default controllers that have a joint to broadcast or to command.
 
-    Args:
-        joints: the robot's joints.
-        commander: COMMANDER or TRAJECTORY, which claim the same joints.
+    `commander` is COMMANDER or TRAJECTORY, which claim the same joints.
     """
     needed = {BROADCASTER: joints.observed, commander: joints.position_commanded}
     return tuple(name for name, whose in needed.items() if whose)

@@ -50,10 +50,6 @@ def copy_description(urdf: str, name: str) -> DescriptionCopy:
     A root link `world` keeps its name. Absolute topics of sensors become relative, so that each
     copy can have its own in its namespace.
 
-    Args:
-        urdf: description of a robot.
-        name: name of the copy.
-
     Raises:
         XmlError: the text is not XML.
     """

@@ -36,10 +36,8 @@ class ArmPair:
 def pair_arms(urdf: str, hardware: str, ports: Mapping[str, Mapping[str, str]]) -> ArmPair:
     """Return two arms of one kind; the leader is not powered, and moved by hand.
 
-    Args:
-        urdf: description of one arm.
-        hardware: as the launch argument of that name.
-        ports: parameters of the hardware of LEADER and FOLLOWER.
+    `hardware` is the launch argument of that name; `ports` has the parameters of the hardware of
+    LEADER and FOLLOWER.
 
     Raises:
         SimSettingsError: the hardware is unknown, or no joint can be commanded by position.

@@ -38,10 +38,7 @@ def plugin_of(hardware: str) -> str:
 def on_hardware(urdf: str, hardware: str, parameters: Mapping[str, str]) -> str:
     """Return a description whose `<ros2_control>` block names other hardware.
 
-    Args:
-        urdf: description of a robot with such a block.
-        hardware: a short name of PLUGINS, or a plugin.
-        parameters: the `<param>`s of the new plugin; those of the old one are dropped.
+    `hardware` is a short name of PLUGINS, or a plugin. The parameters replace all `<param>`s.
 
     Raises:
         SimSettingsError: the hardware is unknown, or there are several blocks: one port serves one.

@@ -131,10 +131,6 @@ def _expanded(
 def path_of(file: str, finder: ResourceFinder) -> Path:
     """Return the path of a file that is given as a path or a URI.
 
-    Args:
-        file: the path or URI.
-        finder: finds packages.
-
     Raises:
         ResourceNotFoundError: the URI does not exist.
     """

@@ -9,11 +9,7 @@ from arm_node.limited_yaml import YamlError, load_yaml
 
 
 def read_text(path: Path, title: str) -> str:
-    """Return the content of a file.
-
-    Args:
-        path: a file in UTF-8.
-        title: name of the file in messages, such as "the robots' file".
+    """Return the content of a file in UTF-8; messages give its title, such as "the robots' file".
 
     Raises:
         SimSettingsError: the file cannot be read.
@@ -28,11 +24,6 @@ def read_text(path: Path, title: str) -> str:
 
 def parse_yaml(text: str, path: Path, title: str) -> Any:
     """Return the parsed YAML.
-
-    Args:
-        text: content of the file.
-        path: the file, for the message.
-        title: as for `read_text`.
 
     Raises:
         SimSettingsError: the text is not YAML, or exceeds the limits of `load_yaml`.

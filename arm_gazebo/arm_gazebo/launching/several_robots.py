@@ -202,12 +202,7 @@ def read_copies(copies: str, limit: int) -> int:
 
 
 def read_grid(copies: int, spacing: str, pose: str) -> Grid:
-    """Return the grid that launch arguments describe.
-
-    Args:
-        copies: their number.
-        spacing: the distance of neighbours in m.
-        pose: pose of the first copy; "" for the origin.
+    """Return the grid of launch arguments: spacing in m, pose of the first copy, "" for the origin.
 
     Raises:
         SimSettingsError: a value is not a number, or not one that makes sense.
@@ -234,12 +229,6 @@ def copies_of(
 
     NAME is the namespace of the original, or without one the robot's name. Links and joints have
     the prefix NAME_0_, and the controllers' parameters name them so.
-
-    Args:
-        setup: the original.
-        grid: the places of the copies.
-        base: "fixed" or "free".
-        namespace: namespace of the original.
 
     Raises:
         SimSettingsError: the controllers' file or the namespace is invalid.

@@ -48,9 +48,7 @@ class MeshCache:
     """The parts of mesh files, by a key of their content.
 
     An entry that cannot be read or written is ignored: the cache never keeps a robot from starting.
-
-    Args:
-        folder: folder of the entries; created when the first one is written.
+    The folder is created when the first entry is written.
     """
 
     def __init__(self, folder: Path) -> None:

@@ -39,10 +39,7 @@ class MeshAsset:
 class MeshLibrary:
     """Reads mesh files and adds them to a specification, each file and scale once.
 
-    Args:
-        spec: the specification that the meshes are added to.
-        resources: finds the files.
-        cache: the meshes that earlier runs read; None to read every file.
+    `cache` has the meshes that earlier runs read; None reads every file.
     """
 
     def __init__(
@@ -75,9 +72,7 @@ class MeshLibrary:
     def assets(self, mesh: Mesh, user: str = "") -> tuple[MeshAsset, ...]:
         """Return the visual parts of a mesh, and add new ones to the specification.
 
-        Args:
-            mesh: the file and its scale.
-            user: the element that uses it, for MuJoCo's message if it does not compile.
+        MuJoCo's message names `user`, the element that uses it, if it does not compile.
 
         Raises:
             MeshError: the file cannot be found or read; the message names it.
@@ -87,9 +82,7 @@ class MeshLibrary:
     def hulls(self, mesh: Mesh, user: str = "") -> tuple[MeshAsset, ...]:
         """Return the collision parts of a mesh, and add new ones to the specification.
 
-        Args:
-            mesh: the file and its scale.
-            user: the element that uses it, for MuJoCo's message if it does not compile.
+        MuJoCo's message names `user`, the element that uses it, if it does not compile.
 
         Raises:
             MeshError: the file cannot be found or read; the message names it.

@@ -26,12 +26,9 @@ PRODUCTS_AT_ONCE = 4_000_000
 
 
 def outermost(vertices: Array) -> Array:
-    """Return the outermost vertices of a mesh; all of them if they are few.
+    """Return the outermost of a mesh's vertices, shape (v, 3); all of them if they are few.
 
     MuJoCo computes the convex hull, which takes seconds for a hundred thousand vertices.
-
-    Args:
-        vertices: shape (v, 3).
     """
     if len(vertices) <= HULL_DIRECTIONS:
         return vertices

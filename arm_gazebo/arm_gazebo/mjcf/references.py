@@ -44,10 +44,6 @@ class MjcfReference:
 def references(text: str, path: Path | None) -> Iterator[MjcfReference]:
     """Yield what an MJCF and those that it includes name.
 
-    Args:
-        text: the MJCF.
-        path: its file; None for a text without a file.
-
     Raises:
         XmlError: the MJCF, or one that it includes, is not XML.
         OSError: an included file cannot be read.

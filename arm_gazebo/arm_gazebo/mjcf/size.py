@@ -47,11 +47,7 @@ class _Demand:
 def check_mjcf_size(text: str, source: str, path: Path | None, limit: MemoryLimit) -> None:
     """Refuse an MJCF that requests more memory than the limit, or too many copies.
 
-    Args:
-        text: the MJCF.
-        source: the name of the MJCF in messages.
-        path: its file; None if the text does not come from a file.
-        limit: the limit on the compiled model.
+    Messages call it `source`; `path` is None if the text does not come from a file.
 
     Raises:
         ModelError: the limit is exceeded; the message names the largest element.

@@ -79,13 +79,7 @@ def _named(kind: str, elements: Sequence[Any], file: str) -> str:
 
 
 def report_margins(spec: mujoco.MjSpec, file: str, report: BuildReport) -> None:
-    """Report the geoms and pairs of an MJCF that have both a margin and a gap.
-
-    Args:
-        spec: the specification that was read from it.
-        file: its name.
-        report: receives one warning for each kind of element.
-    """
+    """Report the geoms and pairs with both a margin and a gap, one warning for each kind."""
     for kind, elements in (("geom", spec.geoms), ("pair", spec.pairs)):
         both = [element for element in elements if element.margin > 0.0 and element.gap > 0.0]
         if not both:

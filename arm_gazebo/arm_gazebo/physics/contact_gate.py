@@ -38,13 +38,7 @@ class Clearance:
 
 
 def floor_clearance(model: mujoco.MjModel, data: mujoco.MjData, period_s: float) -> Clearance:
-    """Return the clearance of a model above its floor.
-
-    Args:
-        model: the model.
-        data: a state with valid geom positions.
-        period_s: control period.
-    """
+    """Return the clearance of a model above its floor in a state with valid geom positions."""
     ticks = max(1, round(CHECK_EVERY_S / period_s))
     moving = _moving_geoms(model)
     # Forces begin at the sum of both margins.
@@ -61,12 +55,8 @@ def floor_clearance(model: mujoco.MjModel, data: mujoco.MjData, period_s: float)
 class ContactGate:
     """Switches MuJoCo's collision detection off while everything is well above a bare floor.
 
-    It stays on in a world with other shapes to touch, or with parts that touch each other.
-
-    Args:
-        model: the model whose option flags are switched.
-        data: a state with valid geom positions.
-        period_s: time between two calls of `update`.
+    It stays on in a world with other shapes to touch, or with parts that touch each other. The geom
+    positions in `data` are valid, and `period_s` is the time between two calls of `update`.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, period_s: float) -> None:

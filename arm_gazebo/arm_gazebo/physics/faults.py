@@ -70,11 +70,8 @@ class PhysicsFaults:
     def distort(self, name: str, kind: Distortion, deviation: float, seed: int) -> None:
         """Make readings wrong from now on.
 
-        Args:
-            name: a joint, a sensor, or one of its channels, such as j0/position.
-            kind: how they are wrong.
-            deviation: standard deviation of the noise, in the unit of the reading.
-            seed: of the noise.
+        `name` is a joint, a sensor, or one of its channels, such as j0/position. The standard
+        deviation of the noise is in the unit of the reading.
         """
         self._distortions[name, kind] = deviation, seed
 
@@ -107,12 +104,9 @@ class PhysicsFaults:
         self._frozen.update(present["frozen"])
 
     def apply(self, channels: Sequence[str], readings: Values, number: int) -> None:
-        """Apply the faults to readings.
+        """Apply the faults to the readings (n,) of channels such as j0/position, in place.
 
-        Args:
-            channels: names of the readings, such as j0/position.
-            readings: changed in place, shape (n,).
-            number: number of the state, which determines the noise.
+        The number of the state determines the noise.
         """
         if not self._distortions:
             return

@@ -79,9 +79,7 @@ class StateProbe:
     def observe(self, model: mujoco.MjModel, data: mujoco.MjData) -> mujoco.MjData:
         """Return the present state, valid until the next one; do not write to it.
 
-        Args:
-            model: the simulation's model, which may have changed since the last call.
-            data: the simulation's state.
+        The model may have changed since the last call.
         """
         self._use(model)
         if self._observed != self.number:

@@ -53,14 +53,8 @@ class RunSample:
 class SimulationStatistics:
     """Samples what the loop counts anyway, and reports the last second or two.
 
-    A tick pays for six readings of the clock. Loop thread only.
-
-    Args:
-        simulation: the simulation.
-        costs: of its ticks, updated by them.
-        pacer: paces the ticks.
-        streams: return the figures of the cameras and sensors.
-        clock: wall time; default the operating system's monotonic clock.
+    A tick pays for six readings of the clock. Loop thread only. The ticks update `costs`; `streams`
+    return the figures of the cameras and sensors.
     """
 
     def __init__(

@@ -15,10 +15,7 @@ class SteppedShapes:
     """Hides the shapes of a model that no step needs. Loop thread only.
 
     Contacts stay the same, bit for bit; MuJoCo looks for what is near in smaller boxes. While it
-    steps, hidden shapes keep their poses.
-
-    Args:
-        model: the model. Its lists of the bodies' shapes are changed.
+    steps, hidden shapes keep their poses. The model's lists of the bodies' shapes are changed.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:

@@ -47,9 +47,7 @@ class PropertyChanges:
     def carried_to(self, model: mujoco.MjModel, roots: Collection[str]) -> "PropertyChanges":
         """Return the changes that continue in another model.
 
-        Args:
-            model: the other model.
-            roots: top-level bodies that continue; gravity does if the world is one of them.
+        `roots` are the top-level bodies that continue; gravity does if the world is one of them.
         """
         world, names = model.body(0).name, _top_level(model).intersection(roots)
         return PropertyChanges(

@@ -66,11 +66,7 @@ def run_of(file: RunFile) -> RecordedRun:
 
 
 def header_of(run: SimulationRun, built: BuiltModel) -> Mapping[str, Any]:
-    """Return what a file needs to rebuild a run.
-
-    Args:
-        run: the run.
-        built: its model when the recording begins.
+    """Return what a file needs to rebuild a run, which begins with the model `built`.
 
     Raises:
         RecordingError: the run is a replay.

@@ -87,9 +87,7 @@ class _StateQueue:
     def take(self, count: int, previous: int) -> StateBlock:
         """Take out the first states, so that the next ones get their memory; writing thread.
 
-        Args:
-            count: how many.
-            previous: the hash after the period before.
+        `previous` is the hash after the period before.
         """
         first, states = self.first, self.each[:count]
         self.first += count
@@ -105,11 +103,8 @@ class RunRecorder:
 
     The loop thread only copies states and lists inputs. It does not wake the writing thread but for
     full blocks: the two would compete for Python's lock in the middle of a tick. If the file cannot
-    be written any more, the recording ends with `failure`, and the run goes on.
-
-    Args:
-        run: the run.
-        writer: writes the file, which already has its header.
+    be written any more, the recording ends with `failure`, and the run goes on. The writer's file
+    already has its header.
 
     Attributes:
         failure: why the recording ended by itself; "" as long as it has not.
@@ -135,11 +130,7 @@ class RunRecorder:
 
     @classmethod
     def to_file(cls, run: SimulationRun, path: Path) -> Self:
-        """Record a run to a file from now on. Not on the loop's thread.
-
-        Args:
-            run: the run.
-            path: the file, which must not exist.
+        """Record a run to a new file from now on. Not on the loop's thread.
 
         Raises:
             RecordingError: the file cannot be written, or the run cannot be recorded.
@@ -175,8 +166,7 @@ class RunRecorder:
     def start(self, first: Iterable[RecordedInput] = ()) -> None:
         """Record from now on. Loop thread, between two ticks, or before the loop runs.
 
-        Args:
-            first: inputs that bring a run, as the header rebuilds it, to the present state.
+        The inputs in `first` bring a run, as the header rebuilds it, to the present state.
         """
         self._records.extend(first)
         self._thread.start()
@@ -348,11 +338,7 @@ class RunRecorder:
 
 @contextmanager
 def recording(run: SimulationRun, path: Path) -> Iterator[None]:
-    """Record a run from now on to the end of the `with` block.
-
-    Args:
-        run: the run.
-        path: the file, which must not exist.
+    """Record a run to a new file, from now on to the end of the `with` block.
 
     Raises:
         RecordingError: the file cannot be written, or the run cannot be recorded.

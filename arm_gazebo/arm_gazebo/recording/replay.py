@@ -62,9 +62,6 @@ class ReplayResult:
 class Replay:
     """A recorded run that runs again. One thread.
 
-    Args:
-        file: the recording.
-
     Raises:
         GazeboError, ArmControlError, DescriptionError: the run cannot be built with what is here.
 

@@ -101,11 +101,9 @@ Record = RecordedInput | StateBlock | RecordingEnd
 
 
 class RunFileWriter:
-    """Writes a recording; not thread-safe. Each `flush` leaves a readable file.
+    """Writes a recording to a new file; not thread-safe. Each `flush` leaves a readable file.
 
-    Args:
-        path: the file; it must not exist.
-        header: what rebuilds the run; plain data.
+    The header is what rebuilds the run: plain data.
 
     Raises:
         RecordingError: the file exists, or cannot be written.
@@ -163,9 +161,6 @@ class RunFileWriter:
 
 class RunFile:
     """Reads a recording, record by record.
-
-    Args:
-        path: the file.
 
     Raises:
         RecordingError: it does not exist, or is not a recording.

@@ -36,11 +36,8 @@ class StateRow:
     """Copies the state of a run as one row of numbers. Loop thread.
 
     A row holds the time, MuJoCo's state, and the commands and states of each robot's controller
-    manager, among them the readings of its sensors. The rows of one model have one length.
-
-    Args:
-        simulation: the simulation, between two changes of its model.
-        managers: the controller managers of its robots.
+    manager, among them the readings of its sensors. The rows of one model have one length. It is
+    made between two changes of the simulation's model.
 
     Attributes:
         data: the arrays that it copies; a change of the model brings others.
@@ -96,9 +93,7 @@ def state_names(model: mujoco.MjModel, managers: Sequence[ControllerManager]) ->
 def chained_hashes(previous: int, states: Iterable[bytes]) -> Iterator[int]:
     """Return for each state the hash (64 bits) of it and of all states before it.
 
-    Args:
-        previous: the hash after the period before the first one; 0 if there is none.
-        states: copies of the states.
+    `previous` is the hash after the period before the first one; 0 if there is none.
     """
     return islice(accumulate(states, _chained_hash, initial=previous), 1, None)
 

@@ -160,12 +160,9 @@ class Lighting:
     def __init__(
         self, model: mujoco.MjModel, data: mujoco.MjData, forward: NDArray[np.float64]
     ) -> None:
-        """Collect the lights.
+        """Collect the lights, whose frames in `data` are up to date.
 
-        Args:
-            model: the model.
-            data: state with up-to-date frames of the lights.
-            forward: (3,) unit vector along which the camera looks; the head light's direction.
+        The head light shines along the unit vector `forward`, (3,).
         """
         self._model = model
         self._data = data
@@ -177,9 +174,7 @@ class Lighting:
     ) -> NDArray[np.float32]:
         """Return the brightness (n, 3) of white surfaces, 1 for fully lit.
 
-        Args:
-            points: (n, 3) points on the surfaces, in m.
-            normals: (n, 3) outward unit normals there.
+        The points (n, 3) are in m; the normals (n, 3) have length 1 and point outwards.
         """
         light = np.zeros(points.shape, np.float32)
         head = self._model.vis.headlight

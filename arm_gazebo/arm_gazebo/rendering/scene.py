@@ -7,10 +7,7 @@ from arm_gazebo.feed.snapshot import CameraSnapshot
 
 
 def read_model(file: int) -> mujoco.MjModel:
-    """Return the compiled model of a file (MJB).
-
-    Args:
-        file: descriptor of the file; stays open.
+    """Return the compiled model of a file (MJB), whose descriptor stays open.
 
     Raises:
         CameraError: the file is not a model that this version of MuJoCo can read.

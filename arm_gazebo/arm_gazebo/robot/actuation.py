@@ -49,10 +49,7 @@ def drive_slices(model: mujoco.MjModel, joints: Sequence[RobotJoint]) -> tuple[s
     """Return where driven joints have their activations in `data.act`, and controls in `data.ctrl`.
 
     Neither is at the actuator's number: a world may have actuators with several controls or none.
-
-    Args:
-        model: the model.
-        joints: driven joints, whose actuators stand together.
+    The actuators of the joints stand together.
     """
     first = next((joint.actuator for joint in joints if joint.actuator is not None), None)
     if first is None:

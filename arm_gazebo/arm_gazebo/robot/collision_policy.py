@@ -49,9 +49,8 @@ def with_self(masks: CollisionMasks) -> CollisionMasks:
 def exclude_own_contacts(spec: mujoco.MjSpec, touching: Container[str]) -> None:
     """Exclude contacts between the bodies of one entity.
 
-    Args:
-        spec: contains only the entity, with named bodies; receives the exclusions.
-        touching: names of bodies that still collide with all the others.
+    `spec` has only the entity, with named bodies; those in `touching` still collide with all
+    others.
     """
     solid = [
         (body.name, _carrier(body))

@@ -18,10 +18,7 @@ DIRECTIONS = 64
 class FloorContact:
     """The points on which a body and its subtree can stand.
 
-    Args:
-        model: the model.
-        data: valid positions of bodies and geoms, and centres of mass (`mj_comPos`).
-        root: id of the body.
+    `data` has valid positions of bodies and geoms, and centres of mass (`mj_comPos`).
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, root: int) -> None:
@@ -52,10 +49,7 @@ class FloorContact:
 def lowest_points(model: mujoco.MjModel, data: mujoco.MjData, root: int) -> dict[int, float]:
     """Return the lowest z in m of each collision geom in a body's subtree.
 
-    Args:
-        model: the model.
-        data: valid positions of geoms.
-        root: id of the body.
+    The positions of geoms in `data` are valid.
     """
     heights: dict[int, float] = {}
     for geom in _touching_geoms(model, root):

@@ -59,12 +59,8 @@ def add_rollers(
 ) -> None:
     """Add rollers to each wheel with friction in only one direction.
 
-    Args:
-        spec: the model to which the rollers are added.
-        bodies: the robot's links by name.
-        robot: the description; its root is upright.
-        tags: the directions of the links' friction.
-        report: receives the wheels that have rollers, and those that cannot have any.
+    The root of the robot is upright. The report gets the wheels that have rollers, and those that
+    cannot have any.
     """
     rotations = {robot.root: np.eye(3)}
     made: list[str] = []
@@ -122,13 +118,8 @@ def _add(
 ) -> str:
     """Add the rollers of one wheel; return why that is impossible, or an empty string.
 
-    Args:
-        spec: the model to which the rollers are added.
-        body: the wheel.
-        robot: the description.
-        joint: the joint that turns the wheel.
-        directions: the grip's direction and down, in the link's axes.
-        tags: the friction along the grip.
+    `directions` are the grip's direction and down, in the link's axes; `tags` have the friction
+    along the grip.
     """
     [collision] = robot.link(joint.child).collisions
     assert isinstance(collision.geometry, Cylinder)

@@ -46,12 +46,7 @@ class _DepthPublisher:
         return bool(watched(self._clouds))
 
     def publish(self, time_s: float, picture: NDArray[np.uint8] | None) -> None:
-        """Publish the depth on the topics that have subscribers.
-
-        Args:
-            time_s: stamp.
-            picture: (height, width, 3) colours of the points, None for no colours.
-        """
+        """Publish the depth on topics with subscribers, with colours (height, width, 3) if any."""
         set_stamp(self._image.header, time_s)
         for publisher in watched(self._images):
             publisher.publish(self._image)
@@ -211,14 +206,7 @@ class CameraDiagnostics:
         publishers: Sequence[CameraPublisher],
         pipeline: CameraPipeline,
     ) -> None:
-        """Start reporting.
-
-        Args:
-            node: the node that gets the publisher and a timer.
-            sensors: the cameras.
-            publishers: the publisher of each camera.
-            pipeline: renders the cameras.
-        """
+        """Start reporting."""
         self._pipeline = pipeline
         self._cameras = tuple(zip(sensors, publishers, pipeline.statistics, strict=True))
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)

@@ -23,12 +23,7 @@ class RosClockPublisher:
     """
 
     def __init__(self, node: Node, outbox: Outbox) -> None:
-        """Create the publisher.
-
-        Args:
-            node: the simulation's node.
-            outbox: the outbox of the loop that publishes.
-        """
+        """Create the publisher; the outbox is that of the loop that publishes."""
         self._node = node
         self._outbox = outbox
         self._known_publishers = 1

@@ -29,11 +29,8 @@ if TYPE_CHECKING:
 def follow_setting(node: Node, setting: Setting, apply: Callable[[Any], object]) -> None:
     """Apply a setting each time a client sets its parameter.
 
-    Args:
-        node: the node that declares it.
-        setting: checks and converts the value; a value that it refuses is not set, and the client
-            gets the reason.
-        apply: takes the new value; on the thread of the node's executor.
+    A value that the setting refuses is not set, and the client gets the reason. `apply` takes the
+    new value on the thread of the node's executor.
     """
 
     def check(changed: Sequence[Parameter]) -> SetParametersResult:
@@ -62,12 +59,8 @@ logger = logging.getLogger(__name__)
 class RunRecording:
     """Begins a recording when `record_run` is set to a file, and ends it when it is set to "".
 
-    The parameter's callbacks run on the executor of its node, which waits for the loop.
-
-    Args:
-        node: declares the parameter.
-        run: the run to record.
-        path: the parameter's first value; "" for no recording.
+    The parameter's callbacks run on the executor of its node, which waits for the loop. `path` is
+    the parameter's first value; "" for no recording.
 
     Raises:
         RecordingError: the first recording cannot begin.
@@ -151,11 +144,6 @@ class FaultParameter:
     Its value is the list of all requested faults, such as `['joint_stalled j0', 'slow_tick 0.02']`;
     see `arm_gazebo.faults.fault`. The callback runs on the executor of its node, which waits for
     the loop.
-
-    Args:
-        node: declares the parameter.
-        injector: belongs to the loop.
-        loop: runs the simulation.
     """
 
     def __init__(self, node: Node, injector: FaultInjector, loop: ControlLoop) -> None:

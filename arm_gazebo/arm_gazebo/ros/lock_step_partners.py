@@ -59,11 +59,7 @@ class LockStepPartners:
     ) -> None:
         """Look for the partners as soon as the executor spins.
 
-        Args:
-            node: the simulation's node.
-            executor: spins this node and the controllers' nodes, in one thread.
-            loop: has the lock-step.
-            lock_step: the partners and their answers.
+        The executor spins this node and the controllers' nodes, in one thread.
         """
         self._node = node
         self._executor = executor

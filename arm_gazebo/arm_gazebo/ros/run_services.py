@@ -215,13 +215,6 @@ class StepServices:
     /step_simulation answers when the messages of the last step have been sent.
     /step_simulation_with_sensors does not take a step before the pictures of the previous one have
     been published, so that every picture that is due is taken.
-
-    Args:
-        node: gets the services.
-        executor: spins the node.
-        loop: runs the simulation.
-        run: its run state.
-        cameras: publish pictures from another process.
     """
 
     def __init__(

@@ -121,11 +121,6 @@ class _RobotNodes:
     Attributes:
         node: the manager's node.
         managed: the settings of the robot and of its manager.
-
-    Args:
-        settings: settings of the robot.
-        arguments: ROS arguments of the process.
-        clock: simulation time.
     """
 
     def __init__(

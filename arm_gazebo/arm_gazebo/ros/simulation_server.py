@@ -37,11 +37,8 @@ PASSED = b"\x01"
 class StatisticsPublisher:
     """Publishes the figures once per second of wall time while somebody subscribes.
 
-    Args:
-        node: gets the publisher and the service; its executor may be blocked.
-        statistics: the figures, which belong to the loop thread.
-        now_s: returns the simulation time; loop thread.
-        on_loop: runs a function on the loop thread and returns its result.
+    The node's executor may be blocked. The figures and `now_s`, the simulation time, belong to the
+    loop thread, on which `on_loop` runs a function.
     """
 
     def __init__(
@@ -107,15 +104,8 @@ NODE_NAME = "simulation"
 class SimulationServer:
     """Serves on its own node and thread, because requests wait for the loop and for compilation.
 
-    Call `shutdown` before the loop ends, and `destroy_node` last.
-
-    Args:
-        run: the run, which belongs to the loop.
-        loop: runs it; already started, paused or not.
-        resets_clock: returns whether a reset sets the clock to zero; any thread.
-        cameras: the feeds of cameras.
-        statistics: the figures of the run, which belong to the loop.
-        quit_process: asks the process to end.
+    Call `shutdown` before the loop ends, and `destroy_node` last. `resets_clock`, which any thread
+    calls, returns whether a reset sets the clock to zero.
     """
 
     def __init__(

@@ -64,11 +64,6 @@ class WorldParameters:
     """Declares a parameter for each property of the present world, and sets those that clients set.
 
     All of it runs on the executor of the node, which is the thread of the world's editor.
-
-    Args:
-        node: declares the parameters.
-        editor: tells when the world has changed.
-        properties: reads and changes the properties.
     """
 
     def __init__(self, node: Node, editor: WorldEditor, properties: PropertyEditor) -> None:

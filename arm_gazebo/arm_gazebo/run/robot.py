@@ -79,11 +79,7 @@ class SimulatedRobot:
         )
 
     def in_world(self, options: BuildOptions) -> RobotInWorld:
-        """Return the robot for the model builder.
-
-        Args:
-            options: the user's choices for all robots.
-        """
+        """Return the robot for the model builder, with the user's choices for all robots."""
         settings = self.managed.settings
         return RobotInWorld(
             self._robot,
@@ -105,10 +101,6 @@ class SimulatedRobot:
     def drive(self, physics: Physics, seed: int) -> None:
         """Create hardware, sensors and manager before the first tick.
 
-        Args:
-            physics: the physics of the world that contains the robot.
-            seed: seed of the sensors' noise.
-
         Raises:
             ArmControlError: a component does not reach its initial state.
         """
@@ -125,9 +117,7 @@ class SimulatedRobot:
     def start_controllers(self, start: Callable[[str], object], logger: logging.Logger) -> None:
         """Start the controllers that the settings name.
 
-        Args:
-            start: loads, configures and activates the controller of a name.
-            logger: for those that cannot start and that the user did not name.
+        The log has those that cannot start and that the user did not name.
 
         Raises:
             ArmControlError: one that the user named cannot start.

@@ -115,11 +115,6 @@ class SimulationRun:
     ) -> Self:
         """Build the world with its robots, and log what is repaired or left out.
 
-        Args:
-            settings: the user's settings.
-            robots: the robots of the settings, each with the settings of its manager.
-            clock: publishes the simulation time.
-
         Raises:
             GazeboError, DescriptionError, ArmControlError: it cannot be built.
         """

@@ -113,9 +113,7 @@ def _add_mesh(spec: mujoco.MjSpec, meshes: MeshLibrary, mesh: Mesh) -> str:
 def _encloses(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> bool:
     """Return whether triangles enclose a volume and face outwards.
 
-    Args:
-        vertices: shape (v, 3).
-        faces: shape (f, 3), indices of vertices.
+    The vertices have the shape (v, 3), their indices in the triangles (f, 3).
     """
     a, b, c = vertices[faces].transpose(1, 0, 2)
     if np.einsum("ij,ij->", a, np.cross(b, c)) <= 0:

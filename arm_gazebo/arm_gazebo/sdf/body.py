@@ -37,13 +37,8 @@ def add_model(
 ) -> None:
     """Add a rigid body of a model to a world; its frame becomes a body of the same name.
 
-    Args:
-        spec: the world.
-        meshes: the meshes of the world.
-        model: the rigid body to add.
-        pose: (4, 4) pose of the model's frame in the world.
-        report: receives the repairs.
-        strict: whether an unavailable mesh is an error.
+    The pose (4, 4) of the model's frame is in the world; `strict` makes an unavailable mesh an
+    error.
 
     Raises:
         MeshError: a mesh is unavailable and `strict` is set.
@@ -93,14 +88,7 @@ def add_plane(body: mujoco.MjsBody, plane: SdfPlane) -> None:
 
 
 class _SdfGeometry(LinkGeometry):
-    """Adds the shapes of links, with a separate friction for each collision.
-
-    Args:
-        model: gives the frictions.
-        meshes: the meshes of the world.
-        strict: whether an unavailable mesh is an error.
-        report: receives the repairs.
-    """
+    """Adds the shapes of links, with a separate friction for each collision."""
 
     missing = BuildOutcome.LEFT_OUT
 

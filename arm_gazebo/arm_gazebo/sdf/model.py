@@ -85,10 +85,7 @@ class SdfModel:
 def read_model(scope: SdfScope, name: str, static: bool | None = None) -> tuple[SdfModel, ...]:
     """Return the rigid bodies that a <model> and the models in it describe.
 
-    Args:
-        scope: the scope of the <model>.
-        name: name of the model in its world.
-        static: overrides the model's <static>; None keeps it.
+    `static` overrides the model's <static>; None keeps it.
 
     Raises:
         WorldError: a value is invalid.
@@ -130,11 +127,7 @@ def _read_body(model: SdfElement, body: RigidBody) -> SdfModel:
 class _LinkReader:
     """Reads one link.
 
-    Args:
-        link: the <link> element.
-        name: name of the link in the world.
-        frames: the frames of its model.
-        model_frame: (4, 4) pose of its model in the rigid body.
+    `model_frame` is the pose (4, 4) of its model in the rigid body.
     """
 
     def __init__(self, link: SdfElement, name: str, frames: SdfFrames, model_frame: Matrix) -> None:

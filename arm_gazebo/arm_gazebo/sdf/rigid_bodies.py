@@ -47,10 +47,7 @@ class RigidBody:
 def rigid_bodies(scope: SdfScope, name: str, static: bool | None = None) -> list[RigidBody]:
     """Return the rigid bodies of a model; usually there is one.
 
-    Args:
-        scope: the scope of the model.
-        name: name of the model in its world.
-        static: overrides the model's <static>; None keeps it.
+    `static` overrides the model's <static>; None keeps it.
 
     Raises:
         WorldError: a pose or a flag is invalid.
@@ -90,11 +87,7 @@ def _parts(scope: SdfScope, name: str, frame: Matrix, static: bool) -> Iterator[
 
 
 class _JointGroups:
-    """Groups the parts that joints connect to each other or to the world (union-find).
-
-    Args:
-        parts: the parts of one model.
-    """
+    """Groups the parts that joints connect to each other or to the world (union-find)."""
 
     def __init__(self, parts: Sequence[_ModelPart]) -> None:
         self.ground_index = len(parts)

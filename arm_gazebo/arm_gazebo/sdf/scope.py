@@ -53,9 +53,7 @@ class NestedModel:
 class SdfScope:
     """The content of one <world> or <model>.
 
-    Args:
-        element: the <world> or <model>.
-        budget: how many more models are allowed, in a list of one number that all scopes share.
+    All scopes share `budget`, a list of one number: how many more models are allowed.
 
     Raises:
         WorldError: a file is not available or includes itself, or a name is missing or not unique.

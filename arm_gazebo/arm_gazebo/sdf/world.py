@@ -23,9 +23,7 @@ GROUND_COLOR = (0.8, 0.8, 0.8, 1.0)
 def read_sdf_world(path: Path, report: BuildReport) -> mujoco.MjSpec:
     """Return the specification of an SDF world.
 
-    Args:
-        path: path of the file; plain paths in it are relative to its folder.
-        report: receives what is repaired and what is not simulated.
+    Plain paths in it are relative to its folder. The report gets what is repaired or not simulated.
 
     Raises:
         WorldError: the file is not SDF, or a value in it is invalid; the message names file, line

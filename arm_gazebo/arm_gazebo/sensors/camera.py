@@ -68,9 +68,7 @@ class Lens:
     def rays(self, width: int, height: int) -> Array:
         """Return the rays through the centres of a picture's pixels.
 
-        Args:
-            width: width of the picture in pixels.
-            height: height of the picture in pixels; the lens has no `problem` with this size.
+        The lens has no `problem` with this size.
 
         Returns:
             x / z and y / z of each ray in the optical frame, shape (height, width, 2).

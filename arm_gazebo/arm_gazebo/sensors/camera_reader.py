@@ -49,11 +49,8 @@ def parse_cameras(
     """Return the cameras of a URDF, in document order.
 
     A camera is `<gazebo reference="LINK"><sensor name="NAME" type="camera">`, or of type
-    `depth_camera` or `rgbd_camera`. Values that a tag leaves out have Gazebo's defaults.
-
-    Args:
-        description: the robot description.
-        note: receives what is doubtful or not read.
+    `depth_camera` or `rgbd_camera`. Values that a tag leaves out have Gazebo's defaults. `note`
+    receives what is doubtful or not read.
 
     Raises:
         SensorError: a value is invalid; the message names sensor, element and line.
@@ -211,12 +208,7 @@ ROTATION_TOLERANCE = 0.01
 
 
 class _CameraFrames:
-    """A link of a URDF and every link that fixed joints attach to it.
-
-    Args:
-        description: the URDF.
-        link: name of the link that carries the camera.
-    """
+    """A link of a URDF and every link that fixed joints attach to it."""
 
     def __init__(self, description: RobotDescription, link: str) -> None:
         self._link = link
@@ -242,9 +234,7 @@ class _CameraFrames:
     def optics_in(self, frame: str, camera: Pose) -> Matrix | None:
         """Return the (4, 4) pose of a camera's optical axes in a frame.
 
-        Args:
-            frame: the link, or a frame that is fixed to it; for any other frame the result is None.
-            camera: pose of the camera in its link.
+        It is None for a frame that is not fixed to the camera's link.
         """
         pose = self._poses.get(frame)
         if pose is None:

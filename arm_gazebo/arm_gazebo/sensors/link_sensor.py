@@ -119,12 +119,7 @@ class LinkSensor(ABC):
 
     @abstractmethod
     def reading(self, measured: NDArray[np.float64], state: mujoco.MjData) -> NDArray[np.float64]:
-        """Return the channels.
-
-        Args:
-            measured: the concatenated measurements.
-            state: the state that they were made in.
-        """
+        """Return the channels, from the concatenated measurements in this state."""
 
     def add_to(self, spec: mujoco.MjSpec, bodies: Mapping[str, mujoco.MjsBody]) -> None:
         """Add a site to the link, and the measurements."""

@@ -41,10 +41,7 @@ def parse_link_sensors(
 ) -> tuple[LinkSensor, ...]:
     """Return the sensors of a description except cameras, in document order.
 
-    Args:
-        description: the robot description.
-        robot: the robot parsed from it.
-        note: receives what is doubtful or not read.
+    `note` receives what is doubtful or not read.
 
     Raises:
         SensorError: a value is invalid; the message names sensor, element and line.

@@ -50,17 +50,13 @@ def unique_names(sensors: Sequence[_AttachedSensor]) -> list[str]:
 class SensorTags:
     """The tags of one `<sensor>`. It remembers what was looked up, to tell which tags nobody reads.
 
+    `below` is the child element that may hold the tags as well; by default that of the type's name,
+    such as `<imu>`.
+
     Attributes:
         reference: the link or joint that it is attached to.
         name: the sensor's name.
         type: the sensor's type.
-
-    Args:
-        element: the `<sensor>` element.
-        reference: the link or joint that it is attached to.
-        type_name: the sensor's type.
-        below: child element that may hold the tags as well; by default that of the type's name,
-            such as `<imu>`.
 
     Raises:
         SensorError: the sensor has no name.

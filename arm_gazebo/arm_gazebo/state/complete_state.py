@@ -21,12 +21,8 @@ class CompleteState:
 
     A run continues bit for bit from a restored state, as long as it gets the same inputs.
     Parameters are settings and not part of the state. A restored or reset state is published at
-    once, so that it is visible even while time stands still.
-
-    Args:
-        simulation: the physics, which must have the same model when a state is restored.
-        managers: the controller managers of its robots.
-        clock: publishes a time to which the clock is set.
+    once, so that it is visible even while time stands still. A state is restored into the model
+    that it was saved with. `clock` publishes a time to which the clock is set.
 
     Attributes:
         input_gate: notes restored states and resets while a run is recorded.
@@ -119,10 +115,8 @@ class CompleteState:
     def reset(self, clock: bool) -> None:
         """Return physics, drives, controllers and noise to their start.
 
-        Controllers stay active. Their goals are aborted, and their set-points are read again.
-
-        Args:
-            clock: whether the clock starts at 0 again; otherwise it continues.
+        Controllers stay active. Their goals are aborted, and their set-points are read again. With
+        `clock` the clock starts at 0 again; otherwise it continues.
 
         Raises:
             StateError: some controllers refuse; everything else is reset.

@@ -30,11 +30,8 @@ EVERYTHING = ResetScope()
 class RunReset:
     """Resets a run. One thread other than the loop's.
 
-    Args:
-        state: the state of the run, which belongs to the loop.
-        editor: the world.
-        resets_clock: returns whether a reset of everything sets the clock to zero.
-        on_reset: called on the loop thread after each reset, to restart the figures.
+    `resets_clock` returns whether a reset of everything sets the clock to zero. `on_reset` is
+    called on the loop thread after each reset, to restart the figures.
     """
 
     def __init__(

@@ -174,13 +174,8 @@ class SnapshotStore:
     """The snapshots of a running simulation. One thread other than the loop's.
 
     A snapshot with a name lasts as long as the simulation. A path, which has a slash or ends with
-    ".snapshot", is a file.
-
-    Args:
-        state: the state of the run, which belongs to the loop.
-        editor: the world.
-        world: returns the name of the present world.
-        on_restore: called on the loop thread after each restore, to restart the figures.
+    ".snapshot", is a file. `world` returns the name of the present world. `on_restore` is called on
+    the loop thread after each restore, to restart the figures.
     """
 
     def __init__(

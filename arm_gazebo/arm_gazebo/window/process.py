@@ -32,12 +32,7 @@ class WindowProcess:
     def __init__(
         self, environ: Mapping[str, str] = os.environ, spawn: Spawn = subprocess.Popen
     ) -> None:
-        """Prepare without starting a process.
-
-        Args:
-            environ: the simulation's environment, which names the display.
-            spawn: starts a process, like subprocess.Popen.
-        """
+        """Prepare without starting a process; the environment names the display."""
         self._environ = environ
         self._child = WorkerProcess(MODULE, "the window", spawn)
 
@@ -99,9 +94,7 @@ class WindowFeed:
     ) -> None:
         """Prepare without starting the process; `close` is required afterwards.
 
-        Args:
-            process: runs the child; by default on the display that the environment names.
-            clock: wall time in s.
+        By default the child runs on the display that the environment names.
         """
         self._process = process or WindowProcess()
         self._feed = StateFeed(self._process)
@@ -122,12 +115,7 @@ class WindowFeed:
         return self._feed.prepare(model)
 
     def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
-        """Send the state if the last one is old enough. Loop thread only; never waits.
-
-        Args:
-            time_s: simulation time of the state.
-            data: the state.
-        """
+        """Send the state if the last one is old enough. Loop thread only; never waits."""
         now_s = self._clock()
         if self._feed.flowing and now_s - self._sent_s >= INTERVAL_S:
             self._sent_s = now_s

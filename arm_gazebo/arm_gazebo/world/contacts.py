@@ -38,13 +38,7 @@ class Contact:
 def contacts_of(
     name: str | None, model: mujoco.MjModel, data: mujoco.MjData, entities: Entities
 ) -> tuple[Contact, ...]:
-    """Return the contacts of a body or of an entity.
-
-    Args:
-        name: the body or entity; None for every contact.
-        model: the model.
-        data: a state of it, with its contacts and their forces.
-        entities: the entities of the model.
+    """Return the contacts of a body or entity, None for all, in a state that has their forces.
 
     Raises:
         RequestError: there is no such body or entity.

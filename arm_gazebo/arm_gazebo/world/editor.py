@@ -90,14 +90,8 @@ class WorldEditor:
 
     Use it from one thread other than the simulation's: every method may wait for a tick, and for a
     model to compile. All methods raise RequestError if they refuse a request; the world is then
-    unchanged.
-
-    Args:
-        simulation: the simulation, which belongs to another thread.
-        on_loop: runs functions on that thread.
-        holders: look up their indices in the model after each swap.
-        feeds: receive each new model.
-        source: reads models to spawn.
+    unchanged. The holders look up their indices in the model after each swap, and the feeds receive
+    each new model.
 
     Attributes:
         on_loop: runs functions on the simulation's thread.
@@ -151,11 +145,8 @@ class WorldEditor:
     def change_to(self, changes: WorldChanges, then: Callable[[], None] = lambda: None) -> None:
         """Continue with other changes to the same world, which were its `changes` before.
 
-        What is in both keeps its state; the rest starts where it was spawned.
-
-        Args:
-            changes: the changes.
-            then: called on the simulation's thread, before the next tick.
+        What is in both keeps its state; the rest starts where it was spawned. `then` is called on
+        the simulation's thread, before the next tick.
         """
         if changes is not self._changes:
             self._change(changes, then)

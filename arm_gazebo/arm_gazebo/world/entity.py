@@ -72,10 +72,7 @@ class WorldEntity:
 class Entities:
     """The entities of one model, by name.
 
-    Args:
-        built: the model.
-        changes: names of the spawned models.
-        notes: descriptions by clients, which override those from the model.
+    The notes are descriptions by clients, which override those from the model.
     """
 
     def __init__(
@@ -113,12 +110,9 @@ class Entities:
         return self._found[name]
 
     def name_for(self, wanted: str, renaming: bool, default: str) -> str:
-        """Return the name for a new entity.
+        """Return the name for a new entity: the wanted one, or one made from the default.
 
-        Args:
-            wanted: the requested name, or "".
-            renaming: whether another name is acceptable.
-            default: the base of the name if none is requested.
+        With `renaming` another name will do if it is taken.
 
         Raises:
             RequestError: the name is taken or invalid.

@@ -38,9 +38,6 @@ class EntityMotions:
     """Computes on its own copy of the state and never touches the running simulation. One thread.
 
     But for `take`, which belongs to the thread that steps the model.
-
-    Args:
-        model: the model, which is not modified.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:

@@ -43,10 +43,6 @@ class PropertyEditor:
 
     Robots keep the properties of their descriptions. All methods raise RequestError if they refuse
     a request; nothing has changed then.
-
-    Args:
-        editor: the world's editor.
-        physics: the simulation, which belongs to another thread.
     """
 
     def __init__(self, editor: WorldEditor, physics: Physics) -> None:
@@ -96,11 +92,8 @@ class PropertyEditor:
     ) -> PropertyChanges:
         """Return the changes with properties of a thing; None leaves one as it is.
 
-        Args:
-            changes: the changes.
-            name: name of the entity.
-            mass_kg: its mass; it becomes evenly denser or lighter, with all of its parts.
-            friction: coefficient of sliding friction of all of its shapes.
+        `mass_kg` makes it evenly denser or lighter, with all of its parts; `friction` is the
+        coefficient of sliding friction of all of its shapes.
         """
         root = self._root(name)
         present = self._present().of(root)

@@ -54,9 +54,8 @@ class NamedWorld:
 class WorldLoader:
     """Puts the robots into worlds. One thread other than the simulation's.
 
-    Args:
-        entries: the robots; the first one's options give the memory limit of a world.
-        spawn_limit: limit on the memory of an MJCF that is spawned into it.
+    The first robot's options give the memory limit of a world, `spawn_limit` that of an MJCF which
+    is spawned into it.
 
     Attributes:
         world: the present world; None for none.
@@ -173,12 +172,7 @@ class WorldLoader:
 
 
 def named_world(path: Path, report: BuildReport | None = None) -> NamedWorld:
-    """Return the name and description of a world file.
-
-    Args:
-        path: path of the file.
-        report: the report of the build, which names what is missing.
-    """
+    """Return the name and description of a world file."""
     shipped = "shipped" if path in shipped_worlds().values() else ""
     left_out = report.left_out if report else ""
     description = "; ".join(filter(None, (shipped, left_out)))
@@ -186,11 +180,9 @@ def named_world(path: Path, report: BuildReport | None = None) -> NamedWorld:
 
 
 def available_worlds(folders: Sequence[str], go_on: bool = False) -> list[NamedWorld]:
-    """Return the shipped worlds, then the worlds in folders.
+    """Return the shipped worlds, then the worlds in folders, given as paths or URIs.
 
-    Args:
-        folders: paths or URIs.
-        go_on: whether to skip folders that cannot be read.
+    `go_on` skips folders that cannot be read.
 
     Raises:
         RequestError: a folder cannot be read.

@@ -22,12 +22,8 @@ class RunState(Enum):
 class RunControl:
     """Starts, pauses, stops and steps a control loop. One thread other than the loop's.
 
-    A stopped simulation is a paused one that was reset.
-
-    Args:
-        loop: runs the simulation; its `paused` is authoritative, whoever paused it.
-        reset: returns everything to its starting state.
-        quit_process: asks the process to end.
+    A stopped simulation is a paused one that was reset. The loop's `paused` is authoritative,
+    whoever paused it.
     """
 
     def __init__(

@@ -63,12 +63,7 @@ class WorldShape:
 
 
 class WorldShapes:
-    """All shapes of one model except those of robots, and their poses.
-
-    Args:
-        model: the model, which is not modified.
-        entities: the entities of the model.
-    """
+    """All shapes of one model except those of robots, and their poses."""
 
     def __init__(self, model: mujoco.MjModel, entities: Entities) -> None:
         self.shapes = tuple(_shapes(model, entities))
@@ -80,9 +75,7 @@ class WorldShapes:
     ) -> NDArray[np.float64]:
         """Return positions and quaternions (x, y, z, w) of the shapes, shape (n, 7).
 
-        Args:
-            positions: positions of all geoms, shape (ngeom, 3).
-            rotations: rotations of all geoms, shape (ngeom, 9).
+        `positions` (ngeom, 3) and `rotations` (ngeom, 9) are those of all geoms.
         """
         poses = np.empty((len(self.shapes), 7))
         turned = rotations[self._geoms].reshape(-1, 3, 3)

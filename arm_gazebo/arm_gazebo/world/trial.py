@@ -51,11 +51,7 @@ class MjcfTrial:
     ) -> str:
         """Return why a model cannot be simulated, "" if it can.
 
-        Args:
-            text: the MJCF.
-            path: its file, which is read instead of `text`; None without a file.
-            limit: limit on the memory of the model.
-            processor_s: limit on the processor time in s.
+        A file is read instead of the text. `processor_s` limits the processor time.
         """
         request = {
             "text": text,
@@ -128,9 +124,7 @@ def _problem(answer: dict[str, object], limit: MemoryLimit) -> str:
 def check_mjcf_files(text: str, path: Path | None = None) -> None:
     """Refuse an untrusted MJCF that names files outside its own folder, or that are not regular.
 
-    Args:
-        text: the MJCF.
-        path: its file; None for a text without a file, which may not name any files.
+    A text without a file may not name any files.
 
     Raises:
         RequestError: it names a file outside its folder; the message says which.

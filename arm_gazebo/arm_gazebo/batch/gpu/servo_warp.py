@@ -52,20 +52,12 @@ class ServoWarp:
             self._values = wp.zeros((copies, len(servo.joints)), dtype=wp.float64)
 
     def restart(self, rows: wp.array) -> None:
-        """Restart some copies from their start.
-
-        Args:
-            rows: indices of the copies, 32-bit integers on the device.
-        """
+        """Restart copies from their start; their indices are 32-bit integers on the device."""
         inputs = [self._joints, self._drives, self._start, rows]
         wp.launch(restart, len(rows), inputs=inputs, device=self._device)
 
     def command(self, values: Array) -> None:
-        """Take finite commands within the joints' limits; see `ServoBatch.command`.
-
-        Args:
-            values: shape (copies, joints), contiguous.
-        """
+        """Take finite commands in limits, contiguous (copies, joints); see `ServoBatch.command`."""
         self._values.assign(values)
         inputs = [self._joints, self._drives, self._values]
         wp.launch(command, self._copies, inputs=inputs, device=self._device, block_dim=THREADS)

@@ -99,11 +99,7 @@ def room_of(model: mujoco.MjModel) -> Room:
 
 
 def check_overflow(overflow: NDArray[np.int32], room: Room) -> None:
-    """Check that the room sufficed.
-
-    Args:
-        overflow: MuJoCo Warp's flags of each copy, shape (copies,).
-        room: the room.
+    """Check that the room sufficed, by MuJoCo Warp's flags of each copy, shape (copies,).
 
     Raises:
         BatchError: it did not, so that contacts are missing in these copies.
