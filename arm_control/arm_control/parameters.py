@@ -196,10 +196,7 @@ def specs_of(
 ) -> tuple[ParameterSpec, ...]:
     """Return the parameters that a dataclass describes, including those of its groups.
 
-    Args:
-        parameters_type: the dataclass.
-        prefix: what precedes each name.
-        given: values by full name, from which `parameter_groups` take the names of their groups.
+    `given` has values by full name, from which `parameter_groups` take the names of their groups.
     """
     groups = _groups_of(parameters_type).values()
     named = dict.fromkeys((name, g.by) for g in groups for name in g.names(given))
@@ -258,9 +255,7 @@ def _is_list(value: object) -> TypeGuard[Iterable[object]]:
 def build_parameters(parameters_type: type[Any], values: Mapping[str, object]) -> Any:
     """Make an instance of a parameters dataclass, and call its `check_together` if it has one.
 
-    Args:
-        parameters_type: the dataclass.
-        values: by full name; missing ones take their defaults.
+    The values are by full name; missing ones take their defaults.
 
     Raises:
         ParameterError: a name is unknown, or a value has the wrong type.
@@ -305,11 +300,6 @@ def known_parameters(unknown: str, known: Iterable[str]) -> str:
 def take_group(parameters_type: type[Any], prefix: str, values: dict[str, Any]) -> Any:
     """Remove the values below a prefix, such as 'gains.j0.', and return them as a group.
 
-    Args:
-        parameters_type: the group's dataclass.
-        prefix: of the group's names in `values`, with the dot at its end.
-        values: by full name.
-
     Raises:
         ParameterError: a name is unknown, or a value has the wrong type; the message names the
             group.
@@ -325,10 +315,7 @@ def take_group(parameters_type: type[Any], prefix: str, values: dict[str, Any]) 
 def check_values(parameters: object, specs: Iterable[ParameterSpec], prefix: str = "") -> None:
     """Check the values of an instance that was made without `build_parameters`.
 
-    Args:
-        parameters: has an attribute for each parameter.
-        specs: the rules to check.
-        prefix: prefix of the names in `specs` that the attributes lack.
+    `prefix` is that of the names in `specs`, which the attributes lack.
 
     Raises:
         ParameterError: a value breaks the rules of its parameter.

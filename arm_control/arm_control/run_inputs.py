@@ -28,11 +28,7 @@ class InputGate(Protocol):
     ) -> ResultT:
         """Run an input between two ticks, note it, and return its result. Any thread.
 
-        Args:
-            target: the object whose method is called.
-            method: name of the method.
-            arguments: its arguments by name, without `self`; plain data.
-            act: calls the method.
+        The arguments are plain data by name, without `self`; `act` calls the method.
         """
         ...
 
@@ -68,8 +64,7 @@ def run_input_noted_as(
 ) -> Callable[[Input[TargetT, ArgumentsT, ResultT]], Input[TargetT, ArgumentsT, ResultT]]:
     """Mark a method as an input whose arguments are not plain data.
 
-    Args:
-        note: returns the plain data to note instead of the arguments by name.
+    `note` returns the plain data to note instead of the arguments by name.
     """
 
     def mark(method: Input[TargetT, ArgumentsT, ResultT]) -> Input[TargetT, ArgumentsT, ResultT]:

@@ -184,9 +184,7 @@ class _Spot:
 def to_svg(graph: Digraph, downward: bool = False) -> str:
     """Return a picture of the graph: ellipses in blue, boxes in grey.
 
-    Args:
-        graph: the graph.
-        downward: whether arrows point down instead of right.
+    Arrows point right, or down if `downward`.
     """
     layout = place(graph)
     spots, width, height = _spots(graph, layout, downward)
@@ -322,9 +320,7 @@ class NodeTopics:
 def node_graph(nodes: Iterable[NodeTopics], complete: bool = False) -> Digraph:
     """Return nodes as ellipses, topics as boxes, and arrows in the direction of the messages.
 
-    Args:
-        nodes: the nodes, in drawing order.
-        complete: whether to draw also hidden nodes and topics, /rosout and /parameter_events.
+    `complete` also draws hidden nodes and topics, /rosout and /parameter_events.
     """
 
     def shown(names: Iterable[str]) -> list[str]:

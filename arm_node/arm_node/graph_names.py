@@ -62,8 +62,7 @@ class GraphNames:
 def telling_names(node: "Node") -> Iterator[None]:
     """Tell this user's processes the names that a node knows, in a thread until the end of `with`.
 
-    Args:
-        node: a node that another thread spins.
+    Another thread spins the node.
     """
     stop = threading.Event()
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as server:
@@ -90,10 +89,6 @@ def ask_for_names(environ: Mapping[str, str], sockets: str = SOCKETS) -> GraphNa
 
     The names are those that this process discovers. A caller with another discovery range gets
     none; one without a range of its own gets all.
-
-    Args:
-        environ: the environment, which says where the caller would discover others.
-        sockets: the kernel's list of Unix sockets.
     """
     wanted = _socket_prefix(environ)
     if environ.get(RANGE) or environ.get(STATIC_PEERS):

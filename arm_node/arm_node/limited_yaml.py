@@ -38,12 +38,7 @@ def load_yaml_documents(text: str) -> list[Any]:
 
 
 def compose_yaml_documents(text: str, loader: Any) -> "list[yaml.Node]":
-    """Return the nodes of all documents of a YAML text; raises like `load_yaml`.
-
-    Args:
-        text: the text.
-        loader: the class that composes the nodes.
-    """
+    """Return the nodes of all documents of a YAML text; raises like `load_yaml`."""
     return _guarded(text, lambda yaml: list(yaml.compose_all(text, Loader=loader)))
 
 

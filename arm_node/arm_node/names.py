@@ -32,10 +32,7 @@ def listing(names: Iterable[str]) -> str:
 def describe_known(name: str, known: Iterable[str], noun: str = "there is") -> str:
     """Return the second half of an error about an unknown name.
 
-    Args:
-        name: the unknown name.
-        known: the existing names, in any order.
-        noun: introduces the list, as in "the robot has".
+    `noun` introduces the list, as in "the robot has".
 
     Returns:
         "did you mean 'a' or 'b'?" if some are similar, else the list of existing names.

@@ -57,10 +57,6 @@ def given_parameters(content: Mapping[str, Mapping[str, Any]], node: str) -> dic
     """Return the parameters that apply to a node, by their names with dots.
 
     As in rcl, the sections that match the node's name are applied in the order of the file.
-
-    Args:
-        content: parameters by node.
-        node: its full name.
     """
     values: dict[str, Any] = {}
     for pattern, entry in content.items():
@@ -72,9 +68,7 @@ def given_parameters(content: Mapping[str, Mapping[str, Any]], node: str) -> dic
 def applies(pattern: str, node: str) -> bool:
     """Return whether a name in a parameter file, with or without wildcards, means a node.
 
-    Args:
-        pattern: the name in the file; without a leading slash it is below the root.
-        node: the full name of the node.
+    A name without a leading slash is below the root.
     """
     return bool(_expression(pattern).fullmatch(node))
 
@@ -208,12 +202,7 @@ class _Sections:
         self._values: dict[str, _Values | None] = {}
 
     def add_nodes(self, content: Any, above: str) -> bool:
-        """Add the nodes in a mapping; return whether any of them has parameters.
-
-        Args:
-            content: a mapping.
-            above: the name that the keys above it make.
-        """
+        """Add the nodes in a mapping below a name; return whether any of them has parameters."""
         node = f"/{above}" if "/" in above and above[0] != "/" else above
         found = False
         for key, entry in content.items():

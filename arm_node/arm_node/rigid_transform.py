@@ -86,10 +86,8 @@ def rotated(rotation: Quaternion, vector: Vector) -> Vector:
 def rpy_from_rows(rows: Sequence[Sequence[float]]) -> Vector:
     """Return roll, pitch and yaw in rad, about the fixed x, y and z axes.
 
-    The pitch is in [-pi/2, pi/2]; in gimbal lock the roll is 0.
-
-    Args:
-        rows: rows of the rotation matrix, or of a homogeneous matrix.
+    The pitch is in [-pi/2, pi/2]; in gimbal lock the roll is 0. The rows are those of a rotation
+    matrix, or of a homogeneous one.
     """
     (r00, r01, *_), (r10, r11, *_), (r20, r21, r22, *_) = rows[:3]
     level = hypot(r00, r10)

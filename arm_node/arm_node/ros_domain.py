@@ -62,11 +62,8 @@ def other_users(domain: int, table: Path = UDP_SOCKETS) -> list[str]:
     """Return the names of the users, except this one, whose programs listen in a domain.
 
     Fast DDS's shared memory can be opened by its owner only, so programs of two users discover each
-    other, and then no message arrives.
-
-    Args:
-        domain: the domain's id; nothing is known about ids whose ports the system hands out.
-        table: the file with the sockets, see proc_net(5).
+    other, and then no message arrives. Nothing is known about domains whose ports the system hands
+    out.
     """
     if domain and domain not in DOMAINS:
         return []

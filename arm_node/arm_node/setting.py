@@ -55,12 +55,7 @@ class Parameters(Protocol):
     ) -> Value:
         """Return the value of a parameter, converted by `read`.
 
-        Args:
-            name: its name.
-            default: its value if none is given.
-            read: converts the value.
-            description: one line on what it is for.
-            read_only: whether it is fixed from the start.
+        `read_only` fixes it from the start.
 
         Raises:
             ParameterValueError: `read` refuses the value; the message names the parameter.
@@ -169,11 +164,8 @@ def read_settings(
 ) -> SettingsT:
     """Return an instance with the values of parameters.
 
-    Args:
-        cls: the dataclass.
-        parameters: where the values come from.
-        prefix: what the parameters' names begin with, such as "left.".
-        others: values of the fields that no `setting` declares.
+    `prefix` is what the parameters' names begin with, such as "left."; the others are values of the
+    fields that no `setting` declares.
 
     Raises:
         ParameterValueError: a value is invalid; the message names it and the valid values.

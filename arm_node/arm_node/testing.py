@@ -28,10 +28,7 @@ class DiscoveryCheck:
     def __init__(self, node: Node, topic: str, no_mangle: bool = False) -> None:
         """Ask the subscribers of a topic.
 
-        Args:
-            node: the node whose end points must be discovered.
-            topic: fully qualified name.
-            no_mangle: whether the topic is given by its DDS name.
+        `no_mangle` says that the topic is given by its DDS name.
         """
         self._node = node
         self._topic = topic

@@ -33,9 +33,7 @@ class UnusableFileError(OSError):
 def open_file(path: Path | str, max_bytes: int | None = None) -> BinaryIO:
     """Open a regular file for reading.
 
-    Args:
-        path: the file.
-        max_bytes: a larger file is refused; None for any size.
+    A file larger than `max_bytes` is refused.
 
     Raises:
         UnusableFileError: it is not a regular file, or it is too large.

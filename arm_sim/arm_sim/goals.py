@@ -87,8 +87,7 @@ class RunningGoals:
     def start(self, make_request: Any) -> Goal[Any]:
         """Start a goal that the controller has checked.
 
-        Args:
-            make_request: returns the controller's request for a goal's number.
+        `make_request` returns the controller's request for a goal's number.
         """
         number = next(self._numbers)
         goal: Goal[Any] = Goal(self._controller, number)

@@ -31,9 +31,6 @@ class FaultSpan:
 class FaultLog:
     """Records the faults of a test. One thread.
 
-    Args:
-        now_s: returns the simulation time.
-
     Attributes:
         spans: the faults so far, in the order in which they began.
     """

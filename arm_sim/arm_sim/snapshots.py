@@ -45,10 +45,7 @@ class SavedState:
 class Snapshots:
     """Saves and restores a simulation between two ticks.
 
-    Args:
-        run: the run.
-        controllers: its controllers.
-        reseed: gives sensors and cameras the noise of another run.
+    `reseed` gives sensors and cameras the noise of another run.
     """
 
     def __init__(

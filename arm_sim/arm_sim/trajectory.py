@@ -37,10 +37,6 @@ AnyTrajectory: TypeAlias = JointTrajectory | TrajectoryRequest | Mapping[str, An
 def trajectory_request(trajectory: AnyTrajectory, joints: Sequence[str]) -> TrajectoryRequest:
     """Return a trajectory in the controller's form, which the controller still has to check.
 
-    Args:
-        trajectory: the trajectory.
-        joints: the controller's joints.
-
     Raises:
         CallError: it is not a trajectory.
     """

@@ -64,8 +64,7 @@ class StartError(LaunchError):
 def errors_attributed_to(describe: Callable[[], str]) -> Iterator[None]:
     """Turn any exception that the launch file's own code raises into a LaunchFileError.
 
-    Args:
-        describe: returns the subject of the error message; called only after an exception.
+    `describe` returns the subject of the error message; it is called only after an exception.
 
     Raises:
         LaunchFileError: something other than a LaunchError was raised.
@@ -87,9 +86,6 @@ def errors_located_at(where: str) -> Iterator[None]:
     """Let an error begin with a place in a launch file, unless it already names a line.
 
     A UsageError is about the command line, so it stays as it is.
-
-    Args:
-        where: the file and line, "" if unknown.
     """
     try:
         yield

@@ -115,9 +115,6 @@ class PlanBuilder:
     def finish(self, warnings: Sequence[str] = ()) -> LaunchPlan:
         """Return the plan, with all references between its steps resolved.
 
-        Args:
-            warnings: warnings for the user.
-
         Raises:
             LaunchFileError: a step waits for an unknown process, or steps wait for each other.
         """

@@ -88,12 +88,6 @@ def expand_description(
 ) -> LaunchPlan:
     """Return the plan of a description.
 
-    Args:
-        description: the actions.
-        arguments: values of launch arguments, as typed.
-        environ: the environment variables to expand it with.
-        path: the launch file it comes from.
-
     Raises:
         LaunchError: the description is invalid.
     """

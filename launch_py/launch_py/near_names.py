@@ -16,10 +16,7 @@ MIN_SIMILARITY = 0.7
 def describe_known(name: str, known: Iterable[str], noun: str = "there is") -> str:
     """Return the second half of an error about an unknown name.
 
-    Args:
-        name: the unknown name.
-        known: the names that exist, in any order.
-        noun: introduces the list, as in "the robot has".
+    `noun` introduces the list, as in "the robot has".
 
     Returns:
         "did you mean 'a' or 'b'?" if a name is similar, else the list of names that exist.
@@ -55,11 +52,8 @@ def describe_missing_file(
 ) -> str:
     """Return the error about a path that is not a regular file.
 
-    Args:
-        what: what the file would be: "launch file".
-        path: the path.
-        siblings: the files that exist where it was searched.
-        noun: introduces them, as for `describe_known`.
+    `what` says what the file would be, such as "launch file". `siblings` are the files that exist
+    where it was searched; `noun` introduces them.
     """
     if os.path.exists(path):
         return describe_irregular_file(what, path)

@@ -56,12 +56,7 @@ class LaunchConfigurations(dict[str, str]):
         return given
 
     def unread(self, given: Iterable[GivenArgument], declared: Iterable[str]) -> list[str]:
-        """Return a sentence for each undeclared argument that nothing has read, with similar names.
-
-        Args:
-            given: the arguments.
-            declared: the names of the arguments that the launch file declares.
-        """
+        """Return a sentence for each undeclared argument that nothing read, with similar names."""
         declared = set(declared)
         known = declared | self._asked
         return [
@@ -214,13 +209,7 @@ class LaunchScope:
     def warn_of_unread(
         self, given: Iterable[GivenArgument], declared: Iterable[str], where: str = ""
     ) -> None:
-        """Warn of the undeclared arguments that nothing has read.
-
-        Args:
-            given: the arguments.
-            declared: the names of the arguments that the launch file declares.
-            where: what passes them, for the message.
-        """
+        """Warn of the undeclared arguments that nothing has read."""
         for sentence in self._tracked().unread(given, declared):
             self.warnings.append(f"{where}: {sentence}" if where else sentence)
 
@@ -322,10 +311,6 @@ def is_costly(value: Text) -> bool:
 def keep_dict(values: Mapping[Any, Any] | None, of: str) -> dict[Any, Any]:
     """Return a copy of a dict, empty for None.
 
-    Args:
-        values: the dict.
-        of: what takes it, for the error message.
-
     Raises:
         LaunchFileError: it is not a dict.
     """
@@ -353,11 +338,6 @@ def keep_pairs(pairs: Pairs | None) -> tuple[tuple[Text, Text], ...]:
 
 def perform_pairs(context: LaunchScope, pairs: Pairs, of: str) -> tuple[tuple[str, str], ...]:
     """Return the pairs with both sides performed; see `perform_text`.
-
-    Args:
-        context: the scope.
-        pairs: the pairs.
-        of: the argument that takes the pairs, for the error message.
 
     Raises:
         LaunchFileError: an item is not a pair, or a side of it is not a text.

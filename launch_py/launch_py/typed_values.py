@@ -25,11 +25,6 @@ def boolean_text(value: bool) -> str:
 def perform_boolean(context: LaunchScope, value: bool | Text, name: str) -> bool:
     """Return a boolean that may be given as a text.
 
-    Args:
-        context: the scope.
-        value: the given value.
-        name: the name of the value, for the error message.
-
     Raises:
         LaunchFileError: the text means neither true nor false.
     """
@@ -44,10 +39,6 @@ def perform_boolean(context: LaunchScope, value: bool | Text, name: str) -> bool
 
 def check_seconds(value: object, name: str) -> float:
     """Return a duration in s; infinity means never.
-
-    Args:
-        value: the given value.
-        name: the name of the value, for the error message.
 
     Raises:
         LaunchFileError: the value is not a number, or is negative.

@@ -10,11 +10,7 @@ from arm_control.controllers.controller import Controller, ParametersT
 
 
 def ended_at_deactivation(halted_by: str) -> str:
-    """Return the message of a goal that ends with its controller, which may be halted for a reason.
-
-    Args:
-        halted_by: the reason, empty for an ordinary deactivation.
-    """
+    """Return the message of a goal that ends with its controller: why it is halted, if it is."""
     if halted_by:
         return f"Goal aborted: {halted_by}."
     return "Current goal cancelled during deactivate transition."

@@ -70,11 +70,7 @@ class Pid:
         return self._integral.copy()
 
     def reset(self, kept: NDArray[np.bool_]) -> None:
-        """Reset the integrals.
-
-        Args:
-            kept: which joints keep their integral, shape (n,).
-        """
+        """Reset the integrals of the joints that are not `kept`, shape (n,)."""
         self._integral[~kept] = 0.0
 
     def save_state(self) -> Array:
@@ -103,13 +99,7 @@ class Pid:
         self._integrates = bool(self._i.any())
 
     def update(self, error: Array, rate: Array, period_s: float) -> NDArray[np.float64]:
-        """Return the outputs.
-
-        Args:
-            error: position error, shape (n,).
-            rate: velocity error, shape (n,).
-            period_s: time since the last update.
-        """
+        """Return the outputs for errors of position and of velocity, shape (n,)."""
         output = self._p * error + self._d * rate
         if not self._integrates:
             return self._saturated(output)

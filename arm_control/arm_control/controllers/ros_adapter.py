@@ -134,8 +134,7 @@ class ControllerAdapter(ABC, Generic[ControllerT]):
     def takes_commands(self, topic: str) -> bool:
         """Return whether a command takes effect now; if not, say so, once until one does again.
 
-        Args:
-            topic: where the command came from, such as '~/commands'.
+        `topic` is where the command came from, such as '~/commands'.
         """
         reason = self.controller.idle_reason
         if reason and reason != self._said:
@@ -157,10 +156,7 @@ class ControllerAdapter(ABC, Generic[ControllerT]):
     def warn_dropped(self, what: str, reason: str, level: int = logging.WARNING) -> None:
         """Log why a message was dropped, at most once a second; do nothing if it was not.
 
-        Args:
-            what: the message, such as 'command'.
-            reason: why; empty if it was accepted.
-            level: the severity.
+        An empty reason means that it was accepted.
         """
         if reason and self._throttle.permits():
             logger = logging.getLogger(self.controller.name)

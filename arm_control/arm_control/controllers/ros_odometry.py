@@ -52,13 +52,7 @@ class OdometryPublisher:
     def publish(
         self, time_s: float, pose: tuple[float, float, float], twist: Sequence[float]
     ) -> None:
-        """Publish one pose and twist.
-
-        Args:
-            time_s: stamp, in s.
-            pose: x and y in m, heading in rad.
-            twist: the velocities that the constructor's `twist` names.
-        """
+        """Publish a pose, x and y in m and heading in rad, and the velocities of `twist`."""
         x, y, heading = pose
         stamp_ns = round(time_s * 1e9)
         numbers = (x, y, sin(heading / 2), cos(heading / 2))

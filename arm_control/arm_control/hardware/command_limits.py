@@ -101,11 +101,8 @@ class _LimitRule(Protocol):
     def band(self, commands: Values, previous: Values, period_s: float) -> Band:
         """Return the lowest and the highest command; the lowest never exceeds the highest.
 
-        Args:
-            commands: the new commands; they affect the bounds only if neither the last command nor
-                the state is known.
-            previous: the commands of the last cycle, NaN for none.
-            period_s: length of the cycle, above 0.
+        The new commands affect the bounds only if neither the last command, NaN for none, nor the
+        state is known.
         """
         ...
 

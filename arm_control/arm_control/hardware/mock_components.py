@@ -43,12 +43,9 @@ class MockMotion:
     ) -> None:
         """Allocate the arrays.
 
-        Args:
-            info: the component's description.
-            state_names: full names, in the order of the states array.
-            command_names: full names, in the order of the commands array.
-            offset: added to commanded positions.
-            integrates: whether position, velocity and acceleration of a joint are kept consistent.
+        The full names are in the order of the arrays of states and commands. The offset is added to
+        commanded positions; `integrates` keeps a joint's position, velocity and acceleration
+        consistent.
 
         Raises:
             HardwareInfoError: a mimic joint has no leader in this component, or has command

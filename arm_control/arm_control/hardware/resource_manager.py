@@ -45,11 +45,8 @@ class ResourceManager:
     ) -> None:
         """Allocate the arrays and bind each component to its part.
 
-        Args:
-            hardware: the drivers.
-            cycle_rate_hz: how often `read` and `write` are called.
-            supervision: measures their reads and writes and handles exceptions.
-            command_inactive: whether inactive components may be commanded as well.
+        `supervision` measures their reads and writes and handles exceptions; `command_inactive`
+        lets inactive components be commanded as well.
 
         Raises:
             ControllerManagerError: two components, or two interfaces, have the same name.

@@ -32,10 +32,7 @@ class LockStep:
     ) -> None:
         """Wait for these partners from the first tick on.
 
-        Args:
-            partners: their names.
-            timeout_s: longest wait for an answer, in wall time; may be infinite.
-            clock: wall time; default the operating system's monotonic clock.
+        `timeout_s`, the longest wait for an answer in wall time, may be infinite.
         """
         self.partners = tuple(partners)
         self.failure = ""

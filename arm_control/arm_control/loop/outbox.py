@@ -31,9 +31,7 @@ class Outbox:
     def put(self, send: Callable[[bytes], None], message: bytes) -> None:
         """Add a message; messages are sent in the order in which they were added.
 
-        Args:
-            send: sends it. What it uses must live until the loop serves its next call.
-            message: the serialised message.
+        What `send` uses must live until the loop serves its next call.
         """
         self._messages.append((send, message))
 

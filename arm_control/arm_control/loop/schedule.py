@@ -30,9 +30,7 @@ class Schedule:
     def __init__(self, rate_hz: float, start_s: float | None = None) -> None:
         """Make a schedule whose first event is due in the first cycle.
 
-        Args:
-            rate_hz: events per second.
-            start_s: the time of event 0; None for the time of the first cycle after the start.
+        `start_s` is the time of event 0; None for the time of the first cycle after the start.
         """
         self._rate_hz = rate_hz
         self._is_fixed = start_s is not None
@@ -102,11 +100,7 @@ class Cadence:
         """Return the period to run with; None if a later cycle comes closer to the lower rate.
 
         After the clock is set back, the next cycle is a first one. Setting it forward makes no
-        cycle due earlier.
-
-        Args:
-            time_s: of this cycle.
-            cycle_s: from the last cycle to this one.
+        cycle due earlier. `cycle_s` is the time from the last cycle to this one.
         """
         if not self.skips:
             return cycle_s
@@ -126,10 +120,7 @@ class Cadence:
 def achievable_rate_hz(owner: str, requested_hz: int, cycle_rate_hz: int) -> int:
     """Return the divisor of the loop's rate nearest to a requested rate; log a difference.
 
-    Args:
-        owner: what runs at the rate, such as "controller 'arm'".
-        requested_hz: the requested rate; 0 for the loop's.
-        cycle_rate_hz: the loop's rate.
+    `owner` is what runs at the rate, such as "controller 'arm'"; a request of 0 is for the loop's.
     """
     if requested_hz > cycle_rate_hz:
         logger.warning(

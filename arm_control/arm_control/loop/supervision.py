@@ -142,11 +142,7 @@ def failure_of(step: Callable[[], object], what: str) -> str:
 
     A step fails if it returns False or raises. For an `ArmControlError` its message is the reason;
     any other exception is logged with its traceback, even SystemExit from a vendor's library. Only
-    KeyboardInterrupt passes through.
-
-    Args:
-        step: the call.
-        what: describes it in the log: "on_activate of controller 'x'".
+    KeyboardInterrupt passes through. The log calls it `what`: "on_activate of controller 'x'".
     """
     try:
         return f"{what} returned False" if step() is False else ""

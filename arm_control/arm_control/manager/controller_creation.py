@@ -40,11 +40,6 @@ The manager accepts them after the controller's name and a dot.
 def only_type(name: str, types: Sequence[str], parameters: Iterable[str]) -> str:
     """Return the type of a controller from the values that its parameter has.
 
-    Args:
-        name: the controller's name.
-        types: the values.
-        parameters: names of the manager's parameters, for the message.
-
     Raises:
         ControllerManagerError: it has none, or several.
     """
@@ -129,11 +124,7 @@ def unknown_parameters(
 ) -> str:
     """Return a sentence about given parameters that are unknown; empty if there are none.
 
-    Args:
-        given: names of the given parameters.
-        known: names of the node's parameters.
-        owner: owner of the parameters.
-        others: names that are known to another node with the same parameters.
+    The names of `others` are known to another node with the same parameters.
     """
     names = sorted(known)
     harmless = {*names, *others}
@@ -178,9 +169,6 @@ def parameters_of(name: str) -> Iterator[None]:
 
 def manager_settings(parameters: ParametersByNode) -> ManagerSettings:
     """Return the settings of a controller manager in the root namespace.
-
-    Args:
-        parameters: a parameter file's content.
 
     Raises:
         ParameterError: a parameter has the wrong type or value.

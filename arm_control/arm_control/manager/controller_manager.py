@@ -397,11 +397,8 @@ def configured_manager(
 ) -> ControllerManager:
     """Return a manager whose components are still unconfigured; see `bring_up`.
 
-    Args:
-        hardware: the components' drivers.
-        settings: the manager's settings.
-        robot_description: the hardware's URDF, which has the command limits.
-        name: fully qualified name of its node, for command lines in messages.
+    The description has the command limits; `name` is the full name of the node, for command lines
+    in messages.
 
     Raises:
         ArmControlError: names are used twice, or requested limits cannot be read.
@@ -437,10 +434,7 @@ class ControlCycle:
     ) -> None:
         """Prepare the cycle.
 
-        Args:
-            manager: the core.
-            clock: time of the states, used for the controllers' stamps.
-            ticker: measures the periods if `clock` may be set; None uses `clock`.
+        `ticker` measures the periods if `clock` may be set.
         """
         self._manager = manager
         self._now_s = clock.now_s

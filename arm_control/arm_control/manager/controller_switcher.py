@@ -287,8 +287,7 @@ class ControllerSwitcher:
     def _set_chained_modes(self, activated: Sequence[ManagedController] = ()) -> None:
         """Set the chained mode of each controller whose references another one commands.
 
-        Args:
-            activated: controllers that are about to be active.
+        The `activated` ones are about to be active.
         """
         every = tuple(self._loaded.values())
         commanding = [c for c in every if c.is_active or c in activated]

@@ -71,10 +71,7 @@ class RefusedRequests:
     def note(self, request: str, name: str, reason: str) -> None:
         """Record a refusal; the oldest ones are dropped.
 
-        Args:
-            request: the request, such as 'load_controller'.
-            name: name of its controller; empty if the request has no single one.
-            reason: why it was refused.
+        The name is empty if the request has no single controller.
         """
         with self._lock:
             self._reasons.pop((request, name), None)

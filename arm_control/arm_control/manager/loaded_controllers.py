@@ -181,11 +181,7 @@ class ManagedController:
         return outcome is _OK
 
     def status(self, connections: tuple[ChainConnection, ...] = ()) -> ControllerStatus:
-        """Return a snapshot for the list services.
-
-        Args:
-            connections: the references of others that it commands.
-        """
+        """Return a snapshot for the list services, with the references that it commands."""
         exports = self._exports()
         return ControllerStatus(
             name=self.name,

@@ -34,10 +34,8 @@ def manager_arguments(argv: Sequence[str]) -> list[str]:
     """Return the arguments for the controller manager's node.
 
     They are remaps, parameters and parameter files, except `__node:=x`, which would give every node
-    of the process the same name (`controller_manager:__node:=x` renames this one).
-
-    Args:
-        argv: command line of the process; only arguments after `--ros-args` are used.
+    of the process the same name (`controller_manager:__node:=x` renames this one). Only arguments
+    after `--ros-args` are used.
     """
     return _as_arguments(_chosen(argv, _RENAMING))
 
@@ -46,11 +44,8 @@ def controller_arguments(argv: Sequence[str], extra: Sequence[str] = ()) -> list
     """Return the arguments for a controller's node.
 
     Like `manager_arguments`, but without the namespace, because the node uses the manager's, and
-    without a `robot_description` parameter; one in a parameter file is kept.
-
-    Args:
-        argv: command line of the process.
-        extra: the controller's arguments, from the manager's `<controller>.node_options_args`.
+    without a `robot_description` parameter; one in a parameter file is kept. `extra` comes from the
+    manager's `<controller>.node_options_args`.
     """
     kept = [
         pair

@@ -33,9 +33,7 @@ class ParametersByNode:
     def given(self, node: str, namespace: str) -> dict[str, Any]:
         """Return all parameters that apply to a node by their full names, with dots.
 
-        Args:
-            node: name of the node.
-            namespace: its namespace, with the leading slash.
+        The namespace has its leading slash.
 
         Raises:
             ParameterError: an entry for the node has no ros__parameters.
@@ -56,12 +54,7 @@ class ParametersByNode:
 
         It may be under the controller's name, alone or with its namespace or `/**`; under `/**`; or
         among the manager's parameters, where the controller manager looks. The most specific entry
-        wins.
-
-        Args:
-            controller: name of the controller.
-            namespace: namespace of its node, with the leading slash.
-            parameter: name of the parameter.
+        wins. The namespace has its leading slash.
 
         Raises:
             ParameterError: an entry for the controller has no ros__parameters, or lacks the
@@ -147,10 +140,7 @@ def manager_parameters(
 ) -> dict[str, str | list[str]]:
     """Return the parameters that a manager needs before it loads a controller of these files.
 
-    Args:
-        controller: name of the controller.
-        namespace: namespace of its node, with the leading slash.
-        files: parameter files; the first one that has a value counts.
+    The first file that has a value counts.
 
     Raises:
         ParameterError: see `ParametersByNode.lookup`, or a value has a wrong type.

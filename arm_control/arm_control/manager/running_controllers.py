@@ -109,8 +109,7 @@ class RunningControllers:
     def _halt_or_go_on(self, controllers: Sequence[ManagedController]) -> list[ManagedController]:
         """Halt what nothing obeys any more, and let go on what is obeyed again.
 
-        Args:
-            controllers: the active controllers that command, in order of execution.
+        The controllers are the active ones that command, in order of execution.
 
         Returns:
             Those that cannot go on.

@@ -64,10 +64,6 @@ def is_misspelt(type_name: str, known: Collection[str]) -> bool:
 
     It is if it cannot be the name of a plugin, if the suite has its package but no such class in
     it, or if it differs from a known type by a letter or two.
-
-    Args:
-        type_name: the type, which is not known.
-        known: the types that exist.
     """
     if type_name in ONLY_IN_CPP:
         return False

@@ -16,9 +16,7 @@ from arm_node.workarounds.exit_pause import end_process
 def absolute_name(manager: str, namespace: str) -> str:
     """Return the manager's absolute name; a relative one belongs to a namespace.
 
-    Args:
-        manager: name of its node as given.
-        namespace: namespace of the client's node, with or without the leading slash.
+    The namespace is that of the client's node, with or without the leading slash.
     """
     if manager.startswith("/"):
         return manager
@@ -391,10 +389,8 @@ def _add_controller_options(parser: argparse.ArgumentParser) -> None:
 def run_manager_task(node_name: str, task: Task, argv: Sequence[str]) -> NoReturn:
     """Run a client of a controller manager and end this process, with 0 after a signal.
 
-    Args:
-        node_name: name of the client's node; characters that ROS does not allow become underscores.
-        task: the work; an `ArmControlError` is reported to the user and gives exit code 1.
-        argv: ROS arguments of the process, after the program's name.
+    Characters of the name that ROS does not allow become underscores. An `ArmControlError` of the
+    task is reported to the user and gives exit code 1.
     """
 
     def until_interrupted(node: Any, process: NodeProcess) -> int:

@@ -61,12 +61,8 @@ class RetryingCaller:
     ) -> None:
         """Prepare the clients.
 
-        Args:
-            node: node of the clients.
-            server: absolute name of the node that offers the services.
-            services: names of the services to call.
-            timeout_s: how long to wait for an answer before asking again.
-            interrupted: returns whether to stop waiting.
+        After `timeout_s` without an answer a client asks again; `interrupted` tells whether to
+        stop.
 
         Raises:
             ManagerUnreachableError: the name is not a valid node name.
@@ -93,10 +89,8 @@ class RetryingCaller:
     def change(self, service: str, request: Any, is_done: Callable[[], bool]) -> Any:
         """Request a change; return the answer, and log why it was refused.
 
-        Args:
-            service: a service whose answer has the field `ok`.
-            request: the request.
-            is_done: checks whether the change was made although no answer came.
+        The answer has the field `ok`. `is_done` checks whether the change was made although no
+        answer came.
         """
         for _ in range(ATTEMPTS):
             answer = self._try_call(service, request, self._timeout_s)

@@ -33,13 +33,9 @@ def spawner_lock(
     """Hold the machine's spawner lock.
 
     Like ros2_control's spawner it uses flock(2) on the open file, so each waits for the other. If
-    the file cannot be created, it logs a warning and goes on without the lock, which only keeps
-    the output in order.
-
-    Args:
-        path: the file; it is created with its folder if it is missing.
-        wait: waits for a number of seconds; returns True early if the process must end.
-        clock: clock for the timeouts.
+    the file cannot be created, it logs a warning and goes on without the lock, which only keeps the
+    output in order. The file is created with its folder if it is missing. `wait` returns True early
+    if the process must end.
 
     Raises:
         SpawnError: another process has held it during all attempts.

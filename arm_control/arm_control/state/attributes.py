@@ -25,12 +25,7 @@ class Stateful(Protocol):
 
 
 def save_attributes(owner: object, left_out: Collection[str] = ()) -> dict[str, State]:
-    """Return the attributes of an object by name, and the states of those that are `Stateful`.
-
-    Args:
-        owner: the object.
-        left_out: attributes that are not part of its state.
-    """
+    """Return the attributes of an object by name, and the states of those that are `Stateful`."""
     return {
         name: value.save_state() if isinstance(value, Stateful) else value
         for name, value in _attributes_of(owner)

@@ -85,11 +85,7 @@ class ProcessClock(ROSClock):
         return clock
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
-        """Make a clock.
-
-        Args:
-            now_ns: returns the time in nanoseconds; any thread.
-        """
+        """Make a clock of a function that returns the time in nanoseconds, on any thread."""
         self._now_ns = now_ns
         self._used_in_c = False
         with super().handle:

@@ -19,9 +19,6 @@ def end_process(exit_code: int) -> NoReturn:
 
     Functions registered with `atexit` do not run if ROS was used. A process with other threads, or
     whose output cannot be written, ends as usual.
-
-    Args:
-        exit_code: the exit code of the process.
     """
     if "rclpy" in sys.modules and threading.active_count() == 1 and is_on("exit_pause"):
         with suppress(OSError, ValueError):

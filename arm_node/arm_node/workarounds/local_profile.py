@@ -29,11 +29,8 @@ def profile_variable() -> str:
 def use_local_profile(environ: MutableMapping[str, str]) -> None:
     """Use the profile's twin if the process is limited to this host.
 
-    Must run before rclpy starts. With ROS_STATIC_PEERS nothing changes, because rmw_fastrtps
-    itself contacts these peers.
-
-    Args:
-        environ: the environment that rclpy will read; changed in place.
+    Must run before rclpy starts. With ROS_STATIC_PEERS nothing changes, because rmw_fastrtps itself
+    contacts these peers. The environment, which rclpy will read, is changed in place.
     """
     variable = profile_variable()
     stem, extension = os.path.splitext(environ.get(variable, ""))
@@ -47,11 +44,7 @@ def use_local_profile(environ: MutableMapping[str, str]) -> None:
 
 
 def use_general_profile(environ: MutableMapping[str, str]) -> None:
-    """Undo `use_local_profile`, for a child process that chooses its own profile.
-
-    Args:
-        environ: the child's environment; changed in place.
-    """
+    """Undo `use_local_profile`, in place, for a child process that chooses its own profile."""
     variable = profile_variable()
     stem, extension = os.path.splitext(environ.get(variable, ""))
     if environ.get(RANGE) != FROM_PROFILE or not stem.endswith(TWIN):

@@ -40,10 +40,8 @@ logger = logging.getLogger(__name__)
 def raw_sender(publisher: Publisher) -> Callable[[bytes], None]:
     """Return a function that publishes serialised messages, for one thread at a time.
 
-    rclpy's own `publish` checks the type of each message, which takes several calls.
-
-    Args:
-        publisher: is not destroyed while the function runs.
+    rclpy's own `publish` checks the type of each message, which takes several calls. The publisher
+    is not destroyed while the function runs.
     """
     return publisher.handle.publish_raw if is_on("message_template") else publisher.publish
 
@@ -112,8 +110,7 @@ class MessageTemplate:
     def time_indices(self, path: str) -> NDArray[np.intp]:
         """Return the indices in `int32` of the seconds and nanoseconds of a Time or Duration.
 
-        Args:
-            path: field names as for `indices`: "points[0].time_from_start".
+        The path has field names as for `indices`: "points[0].time_from_start".
 
         Raises:
             MessageLayoutError: there is no such field, or it is neither a time nor a duration.

@@ -16,17 +16,14 @@ from contextlib import suppress
 from arm_node.workarounds.switch import is_on
 
 OWN_PROCESS = "/proc/self"
+"""The folder of this process in proc(5)."""
 _PORT_LOCK = re.compile(r"(/.*/fast(?:rtps|dds)_port\d+)_el( \(deleted\))?")
 _MAPPED = re.compile(r"/dev/shm/.*fast(?:rtps|dds)_.*")
 _DELETED = " (deleted)"
 
 
 def open_files(process: str = OWN_PROCESS) -> Iterator[str]:
-    """Yield the path of each open file of a process; it ends with " (deleted)" if that is so.
-
-    Args:
-        process: the process's folder in proc(5).
-    """
+    """Yield the path of each open file of a process; it ends with " (deleted)" if that is so."""
     with suppress(OSError), os.scandir(f"{process}/fd") as entries:
         for entry in entries:
             with suppress(OSError):
@@ -115,9 +112,6 @@ def lost_ports(process: str = OWN_PROCESS) -> list[str]:
     again, and with it the ports. No upstream issue is known.
 
     Call it after creating the process's first node; from any thread.
-
-    Args:
-        process: the process's folder in proc(5).
     """
     ports = read_ports(process) if is_on("lost_ports") else {}
     mapped = mapped_files(process) if ports else {}
@@ -161,9 +155,6 @@ def shorten_liveness_pause(process: str = OWN_PROCESS) -> list[str]:
     numbers side by side. If they are not found, nothing is changed.
 
     Call it after creating the process's first node; from any thread.
-
-    Args:
-        process: the process's folder in proc(5).
     """
     changed: list[str] = []
     if not is_on("signs_of_life"):

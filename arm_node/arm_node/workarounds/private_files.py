@@ -35,9 +35,6 @@ def hide_shared_memory(process: str = OWN_PROCESS) -> list[str]:
     """Remove other users' permissions from this process's shared memory; return the paths.
 
     Call it after creating the process's first node; from any thread.
-
-    Args:
-        process: the process's folder in proc(5).
     """
     changed: list[str] = []
     if not is_on("private_files"):

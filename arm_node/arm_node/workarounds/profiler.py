@@ -17,11 +17,7 @@ logger = logging.getLogger(__name__)
 
 
 def switch_off_profiler(mujoco: ModuleType) -> None:
-    """Stop MuJoCo from timing its steps, in the whole process.
-
-    Args:
-        mujoco: the package; only `arm_gazebo` imports it.
-    """
+    """Stop MuJoCo, which only `arm_gazebo` imports, from timing its steps in this process."""
     if not is_on("profiler"):
         library = LIBRARIES["profiler"]
         if not library.fits:

@@ -26,11 +26,6 @@ def marked_arguments(item: "pytest.Item", marker: str, names: Sequence[str]) -> 
 
     A file in the test's folder may be given by its name alone.
 
-    Args:
-        item: the test.
-        marker: name of the marker.
-        names: the known arguments.
-
     Raises:
         CallError: an argument is unknown.
     """

@@ -122,14 +122,9 @@ def expect_reached(
 ) -> None:
     """Raise AssertionError if joints do not reach a target.
 
-    Args:
-        history: their states.
-        run_until: lets time pass until a condition holds, but at most this many simulated seconds.
-        target: see `TargetCheck`.
-        within_s: how long to wait, in simulated seconds.
-        tolerance: see `TargetCheck`.
-        hold_s: see `TargetCheck`.
-        circumstances: returns more sentences for the message.
+    `run_until` lets time pass until a condition holds, but at most so many simulated seconds;
+    `target`, `tolerance` and `hold_s` are those of `TargetCheck`. `circumstances` returns more
+    sentences for the message.
     """
     __tracebackhide__ = True
     reaching = TargetCheck(history, target, tolerance, hold_s)
@@ -144,10 +139,7 @@ def expect_within(
 ) -> None:
     """Raise AssertionError if a value was beyond its bounds.
 
-    Args:
-        history: the states.
-        limits: bounds by quantity; None for a quantity without any.
-        circumstances: returns more sentences for the message.
+    None is for a quantity without bounds; `circumstances` returns more sentences for the message.
     """
     __tracebackhide__ = True
     found = [
@@ -161,12 +153,7 @@ def expect_within(
 
 
 def violations(history: StateHistory, quantity: str, limit: Limit) -> list[str]:
-    """Return a sentence for each joint whose values were beyond their bounds.
-
-    Args:
-        history: the states.
-        quantity: position, velocity or effort.
-        limit: the bounds.
+    """Return a sentence for each joint whose positions, velocities or efforts broke the bounds.
 
     Raises:
         CallError, UnknownNameError: these are not bounds of these joints.

@@ -31,10 +31,7 @@ COLOURS: Sequence[Colour] = (
 def save_plot(history: StateHistory, path: Path, faults: Sequence[FaultSpan] = ()) -> None:
     """Write a picture with a panel each for positions, velocities and efforts.
 
-    Args:
-        history: the states; at least one.
-        path: PNG file.
-        faults: shown as shaded spans.
+    The history has at least one state; the faults are shown as shaded spans.
 
     Raises:
         OSError: the file cannot be written.

@@ -49,10 +49,7 @@ class RosBench:
     def __init__(self, launch: LoggedProcess, domain_id: int, recording: Path) -> None:
         """Take a launch that has just been started, and wait until everything is ready.
 
-        Args:
-            launch: the launch; it ends with `close`, or if this fails.
-            domain_id: its ROS domain.
-            recording: file to which it records the run; None if it does not.
+        The launch ends with `close`, or if this fails; it records the run to `recording`.
 
         Raises:
             BenchError: the launch fails; with its output.

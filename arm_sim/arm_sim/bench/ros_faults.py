@@ -34,13 +34,7 @@ class RosFaults(InjectedFaults):
     def __init__(
         self, connection: RosConnection, launch: LoggedProcess, now_s: Callable[[], float]
     ) -> None:
-        """Take a launch.
-
-        Args:
-            connection: a node in its domain.
-            launch: its process.
-            now_s: returns the simulation time.
-        """
+        """Take a launch, and the connection of a node in its domain."""
         super().__init__(now_s)
         self.has_killed = False
         self._connection = connection

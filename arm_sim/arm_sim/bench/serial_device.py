@@ -226,11 +226,7 @@ def run_emulator(
 ) -> int:
     """Run an emulated device until a signal; return the exit code.
 
-    Args:
-        what: the device, for messages.
-        device: answers the requests.
-        path: default of the port's path.
-        argv: arguments; default sys.argv.
+    Messages call the device `what`; `path` is the default of the port's path.
     """
     parser = argparse.ArgumentParser(description=f"Emulates {what} behind a serial port.")
     parser.add_argument(

@@ -227,8 +227,7 @@ class BlackBox:
     def begin(self, at_start: bool = False) -> None:
         """Record from the present state on.
 
-        Args:
-            at_start: whether this is the state in which the first recording began.
+        `at_start` says that it is the state in which the first recording began.
         """
         if self._run.physics.input_gate is not None:
             self.refusal = "the test records its run itself"
@@ -295,10 +294,7 @@ class SimulationPool:
         self._built: dict[str, BenchSimulation] = {}
 
     def take(self, arguments: dict[str, Any]) -> BenchSimulation:
-        """Return a simulation in its initial state.
-
-        Args:
-            arguments: those of `BenchSimulation`.
+        """Return a simulation in its initial state, with these arguments of `BenchSimulation`.
 
         Raises:
             DescriptionError, GazeboError, ArmControlError, ParameterValueError: it cannot be built.

@@ -55,12 +55,7 @@ class TouchLog:
         return tuple(self._present.values())
 
     def note(self, time_s: float, data: Any) -> None:
-        """Record the touches in a state.
-
-        Args:
-            time_s: simulation time.
-            data: MuJoCo's data after a step.
-        """
+        """Record the touches in MuJoCo's data after a step."""
         contacts = data.contact
         seen = contacts.geom.tobytes() + contacts.efc_address.tobytes() if data.ncon else b""
         if seen != self._seen or data is not self._data:

@@ -27,12 +27,7 @@ INDEX_FEATURES = {
 
 
 def features_of(streams: Sequence[Stream], fps: int) -> dict[str, Any]:
-    """Return the features of a dataset.
-
-    Args:
-        streams: the streams of an episode; other episodes have the same.
-        fps: rows per second.
-    """
+    """Return the features of a dataset from an episode's streams; other episodes have the same."""
     features: dict[str, Any] = {}
     for stream in streams:
         if isinstance(stream, CameraStream):

@@ -77,11 +77,7 @@ class TableFiles:
 class VideoFiles:
     """Videos of one camera.
 
-    Args:
-        path_of: names the files.
-        height: in pixels, even.
-        width: in pixels, even.
-        fps: frames per second.
+    Height and width are in pixels, and even.
     """
 
     def __init__(self, path_of: PathOf, height: int, width: int, fps: int) -> None:

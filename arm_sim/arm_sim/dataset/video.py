@@ -24,11 +24,7 @@ REPEATABLE = {"threads": "1", "mbtree": "0"}
 class VideoFile:
     """A video that is being written.
 
-    Args:
-        path: an MP4 file to create; its folder exists.
-        height: in pixels, even.
-        width: in pixels, even.
-        fps: frames per second.
+    Height and width are in pixels, and even; the folder of the MP4 file exists.
 
     Attributes:
         frames: how many there are so far.

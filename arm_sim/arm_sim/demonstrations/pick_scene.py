@@ -87,11 +87,7 @@ def _draw_distractors(
 
 
 class PickStage:
-    """Sets scenes up in an environment of the pick.
-
-    Args:
-        env: the environment, in the world `WORLD`.
-    """
+    """Sets scenes up in an environment of the pick, in the world `WORLD`."""
 
     def __init__(self, env: ArmEnv) -> None:
         self._env = env

@@ -48,12 +48,7 @@ def ray_workers(
 
 
 class ShownThere:
-    """A demonstration that is made on the cluster.
-
-    Args:
-        reference: Ray's reference to it.
-        head: the head of the cluster.
-    """
+    """A demonstration that is made on the cluster."""
 
     def __init__(self, reference: Any, head: HeadWatch) -> None:
         self._answer = reference.future()

@@ -91,12 +91,7 @@ class Commands:
             self._lower, self._upper = self._middle - self._half, self._middle + self._half
 
     def of(self, actions: NDArray[np.floating], last: Array) -> Array:
-        """Return the commands of actions.
-
-        Args:
-            actions: from -1 to 1, shape (..., joints); others are clipped.
-            last: the last commands, same shape.
-        """
+        """Return the commands of actions, clipped to -1 to 1; all have the shape (..., joints)."""
         # Not np.clip, which takes twice as long.
         share = np.minimum(np.maximum(np.asarray(actions, dtype=np.float64), -1.0), 1.0)
         base = last if self._mode.adds else self._middle
@@ -105,9 +100,7 @@ class Commands:
     def action_to(self, wanted: Array, last: Array) -> NDArray[np.float32]:
         """Return the action that commands positions, or comes as near to them as one can.
 
-        Args:
-            wanted: the positions, shape (joints,).
-            last: the last commands, same shape.
+        The wanted positions and the last commands have the shape (joints,).
         """
         base = last if self._mode.adds else self._middle
         return np.clip((wanted - base) / self._half, -1.0, 1.0).astype(np.float32)

@@ -239,12 +239,7 @@ class ArmEnv(gymnasium.Env[Observations, NDArray[np.float32]]):
 def task_spaces(
     task: Task, observed: Mapping[str, NDArray[np.float32]]
 ) -> dict[str, spaces.Space[Any]]:
-    """Return the spaces of a task's observations.
-
-    Args:
-        task: the task.
-        observed: observations of one environment.
-    """
+    """Return the spaces of a task's observations, as those of one environment."""
     return {
         name: spaces.Box(one.low, one.high, observed[name].shape, np.float32)
         for name, one in task.observations.items()

@@ -18,11 +18,7 @@ class Expert(Protocol):
     """Shows an episode of a task. Its answer depends on the state, not on who brought it about."""
 
     def command(self, last: Array) -> Array:
-        """Return the next positions of the commanded joints, shape (n,).
-
-        Args:
-            last: the positions that they were last commanded to, shape (n,).
-        """
+        """Return the next positions of the commanded joints after the last ones, shape (n,)."""
         ...
 
 

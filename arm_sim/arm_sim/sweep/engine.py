@@ -31,11 +31,7 @@ class _Assignment:
 class Engine:
     """Makes the runs that a journal lacks, and notes what came of each.
 
-    Args:
-        study: the study.
-        journal: knows the runs that were made before, and takes the others.
-        pool: has the workers; the engine closes it.
-        told: called with each new outcome.
+    The engine closes the pool; `told` is called with each new outcome.
     """
 
     def __init__(

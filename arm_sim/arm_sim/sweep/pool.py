@@ -81,10 +81,7 @@ class Pool(Protocol):
 class ProcessPool:
     """Starts processes that make the runs of a study.
 
-    Args:
-        study: the study.
-        folder: where the recordings of failed runs go.
-        size: how many processes make runs.
+    The recordings of failed runs go to the folder; `size` processes make runs.
     """
 
     attempts = 2
@@ -168,11 +165,8 @@ class _ProcessWorker:
 def _work(connection: Connection, task: str, study_seed: int, folder: Path) -> None:
     """Serve a study until the connection ends; the entry of the process.
 
-    Args:
-        connection: gives (number, values), and takes outcomes.
-        task: see `Study`.
-        study_seed: the seed of the study.
-        folder: where the recordings of failed runs go.
+    The connection gives (number, values), and takes outcomes; the recordings of failed runs go to
+    the folder.
     """
     # Ctrl-C is for the process that owns the study; it ends this one.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

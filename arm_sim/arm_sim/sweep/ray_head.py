@@ -23,10 +23,7 @@ FRAME_HEADER_BYTES, TYPE_BYTE, SETTINGS = 9, 3, 4
 
 
 def check_address(address: str) -> None:
-    """Check that a gRPC server listens at an address, as the head of a Ray cluster does.
-
-    Args:
-        address: HOST:PORT.
+    """Check that a gRPC server listens at HOST:PORT, as the head of a Ray cluster does.
 
     Raises:
         StudyError: nothing listens there, or what listens does not speak gRPC.
@@ -45,12 +42,7 @@ def check_address(address: str) -> None:
 
 
 class HeadWatch:
-    """Tells whether the head still answers.
-
-    Args:
-        address: HOST:PORT.
-        clock: gives the time, in s.
-    """
+    """Tells whether the head at HOST:PORT still answers."""
 
     def __init__(self, address: str, clock: Callable[[], float] = time.monotonic) -> None:
         self._address = address

@@ -203,12 +203,7 @@ class _News:
 
 
 class _RayWorker:
-    """An actor of the cluster.
-
-    Args:
-        actor: handle of a `_Maker`.
-        news: what this worker tells.
-    """
+    """An actor of the cluster, by the handle of its `_Maker`."""
 
     def __init__(self, actor: Any, news: _News) -> None:
         self._actor = actor
@@ -268,13 +263,7 @@ class _RayWorker:
 
 
 class _Maker:
-    """Makes runs in a process of the cluster, whose working directory has the task's file.
-
-    Args:
-        file: name of that file.
-        function: the task in it.
-        study_seed: the seed of the study.
-    """
+    """Makes runs in a process of the cluster, whose working directory has the task's file."""
 
     def __init__(self, file: str, function: str, study_seed: int) -> None:
         self._task_name = f"{Path.cwd() / file}:{function}"

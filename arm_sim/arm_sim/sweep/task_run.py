@@ -31,12 +31,7 @@ def run_once(
 ) -> Outcome:
     """Run the task once; return what came of it, whatever the task does.
 
-    Args:
-        task: the study's task.
-        number: the run's number.
-        values: its values.
-        study_seed: the seed of the study.
-        folder: where the recording goes if the run fails.
+    The recording of a run that fails goes to the folder.
     """
     seed = run_seed(study_seed, number)
     began_s = time.monotonic()

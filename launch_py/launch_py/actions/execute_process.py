@@ -309,11 +309,6 @@ class ExecuteProcess(Action):
 def refuse_unknown_options(action: Action, options: Iterable[str], own: Iterable[str]) -> None:
     """Check the options that an action passes on to ExecuteProcess.
 
-    Args:
-        action: the action.
-        options: the names of the options.
-        own: the names of the action's other arguments, for the error message.
-
     Raises:
         LaunchFileError: there is no such option.
     """
@@ -326,11 +321,7 @@ def refuse_unknown_options(action: Action, options: Iterable[str], own: Iterable
 def perform_shown_streams(context: LaunchContext, output: Output, process: str) -> frozenset[str]:
     """Return the streams that are shown.
 
-    Args:
-        context: the scope.
-        output: a word, or a dict of a word or several for "stdout", "stderr" or "both"; a stream
-            that the dict does not put on the screen is in the log file only.
-        process: the process's name, for the error message.
+    A stream that the dict does not put on the screen is in the log file only.
 
     Raises:
         LaunchFileError: a key or a word is unknown.

@@ -75,10 +75,6 @@ def own_processes(pid_bits: int, ports: ParticipantPorts) -> list[int]:
     """Return this user's processes with these low bits in their id and a participant on the ports.
 
     Requiring a port excludes an unrelated process whose id has the same low bits.
-
-    Args:
-        pid_bits: the low bits of the process id.
-        ports: the ports of the participant's domain.
     """
     return [
         pid
@@ -153,11 +149,8 @@ def are_bystanders(ports: ParticipantPorts, names: Iterable[str]) -> bool:
     """Return whether no participant on these ports is likely to have a node with one of the names.
 
     A bystander is a process of this user that no launch has started and whose command line names
-    none of the nodes. A participant whose process is unknown is not a bystander.
-
-    Args:
-        ports: the ports of the participants.
-        names: the names of the nodes, with or without a namespace.
+    none of the nodes. A participant whose process is unknown is not a bystander. The names may have
+    a namespace.
     """
     if ports.owners.keys() != ports.indices:
         return False

@@ -162,10 +162,6 @@ class SharedMemoryLedger:
     The owner of a segment is looked up when its lock file appears (inotify). After the owner's
     death the files are removed, unless another process uses them. Until then other users cannot
     read them: a process hides what it makes, but not a port of its own that a sender made anew.
-
-    Args:
-        is_ours: tells whether a process id belongs to a supervised process or a descendant.
-        folder: where the segments are.
     """
 
     def __init__(self, is_ours: Callable[[int], bool], folder: str = SHM_FOLDER) -> None:

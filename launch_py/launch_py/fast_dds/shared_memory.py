@@ -86,12 +86,7 @@ def locked_segments(folder: str) -> set[str]:
 
 
 def segments_of(is_owner: Callable[[int], bool], folder: str = SHM_FOLDER) -> set[str]:
-    """Return the segments whose lock such a process holds.
-
-    Args:
-        is_owner: tells whether a process id is one of those asked for.
-        folder: where the segments are.
-    """
+    """Return the segments in a folder whose lock a process holds that `is_owner` accepts."""
     files = lock_files(folder)
     owners = lock_owners(folder) if files else {}
     return {stem for stem, inode in files.items() if any(map(is_owner, owners.get(inode, ())))}

@@ -110,10 +110,8 @@ class Part:
 def read_description(path: Path, include: Callable[..., Action]) -> LaunchDescription:
     """Return the launch description in an XML or YAML launch file.
 
-    Args:
-        path: the file.
-        include: makes the action of an `include` from the file's name. It is an argument because
-            it reads launch files of all formats, and so stands above this module.
+    `include` makes the action of an `include` from the file's name. It is an argument because it
+    reads launch files of all formats, and so stands above this module.
 
     Raises:
         LaunchFileError: the file cannot be read, or an element in it is unknown or malformed.

@@ -118,11 +118,6 @@ def read_file(path: str) -> str:
 def compose_documents(text: str, loader: Any, path: str) -> list[yaml.Node]:
     """Return the nodes of the documents in a parameter file.
 
-    Args:
-        text: the file's text.
-        loader: the YAML loader to read it with.
-        path: the file, for messages.
-
     Raises:
         NodeParameterError: it is not YAML, or nested too deep.
     """
@@ -141,10 +136,8 @@ def compose_documents(text: str, loader: Any, path: str) -> list[yaml.Node]:
 def _node(context: LaunchScope, node: yaml.Node, done: dict[int, yaml.Node]) -> yaml.Node:
     """Return a node of a YAML document with the substitutions in it performed.
 
-    Args:
-        context: the scope of the launch.
-        node: the node, which is modified.
-        done: the nodes visited before, by identity: aliases refer to one node many times.
+    The node is modified; `done` has those visited before, by identity: aliases refer to one node
+    many times.
     """
     import yaml
 
@@ -198,12 +191,7 @@ class ParameterSource:
 
 
 def source_of_values(by_node: Mapping[str, Mapping[str, Value]], text: str) -> ParameterSource:
-    """Return the source of evaluated parameters by node.
-
-    Args:
-        by_node: the parameters.
-        text: their parameter file.
-    """
+    """Return the source of evaluated parameters by node, whose file has this text."""
     sections = tuple((_absolute(node), dict(_flat(values))) for node, values in by_node.items())
     return ParameterSource(GeneratedFile(".yaml", text), sections)
 
@@ -211,9 +199,7 @@ def source_of_values(by_node: Mapping[str, Mapping[str, Value]], text: str) -> P
 def files_in_order(sources: Sequence[ParameterSource], node: str) -> list[File]:
     """Return the files that let the node see the last value of each parameter.
 
-    Args:
-        sources: its parameters, in order.
-        node: its full name; "" if unknown, or for a process with several nodes.
+    `node` is the full name; "" if unknown, or for a process with several nodes.
 
     Raises:
         NodeParameterError: a file is not YAML.

@@ -214,11 +214,9 @@ def _shortened(text: str) -> str:
 def parameters_by_node(
     parameters: Mapping[Any, Any], node_name: str
 ) -> Mapping[str, Mapping[Any, Any]]:
-    """Return a dict's parameters by node.
+    """Return parameters by node, of a dict for one node or in the form of a parameter file.
 
-    Args:
-        parameters: those of one node, or those of several in the form of a parameter file.
-        node_name: the node of a dict that names none; "" stands for every node of the process.
+    `node_name` is the node of a dict that names none; "" stands for every node of the process.
     """
     if parameters and all(isinstance(v, Mapping) and NODE_KEY in v for v in parameters.values()):
         return {str(node): entry[NODE_KEY] for node, entry in parameters.items()}

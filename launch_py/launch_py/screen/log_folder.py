@@ -20,9 +20,7 @@ OWNER_ONLY = 0o600
 class _LogFile:
     """Appends lines. A full file becomes NAME.1, in place of an older one, and a new one begins.
 
-    Args:
-        path: the path of the file.
-        limit_bytes: the largest total size of the two files.
+    `limit_bytes` is the largest total size of the two files.
     """
 
     def __init__(self, path: Path, limit_bytes: int) -> None:
@@ -90,9 +88,7 @@ DEFAULT_LIMIT_BYTES = 50 * MIB
 class LogFolder:
     """A new folder below the root that only its owner can read; the link `latest` points to it.
 
-    Args:
-        root: see `log_root`.
-        limit_bytes: the largest total size of a process's log file and its older part.
+    `limit_bytes` is the largest total size of a process's log file and its older part.
     """
 
     def __init__(self, root: Path, limit_bytes: int = DEFAULT_LIMIT_BYTES) -> None:

@@ -31,11 +31,7 @@ class _Allowance:
 
 
 class OutputRateLimiter:
-    """Decides which lines of a process are shown, and counts the others.
-
-    Args:
-        clock: gives the time in seconds.
-    """
+    """Decides which lines of a process are shown, and counts the others."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -54,8 +50,7 @@ class OutputRateLimiter:
     def counts(self, at_end: bool = False) -> Iterator[tuple[str, int]]:
         """Yield each process that may show lines again, and how many of its lines were dropped.
 
-        Args:
-            at_end: whether this is the last call; then all counts are yielded.
+        At the end all counts are yielded.
         """
         for name in self._allowances:
             allowance = self._refilled(name)
@@ -79,13 +74,8 @@ class Reporter:
 
     After the screen fails (a closed pipe or terminal), only the log files are written. If a file
     cannot be written, the screen says so once. If a process writes more than anyone can read, the
-    screen shows the first lines and now and then the number of lines it dropped.
-
-    Args:
-        screen: the screen.
-        logs: the log folder.
-        show_all: whether the screen also shows output that otherwise goes to the log files only.
-        rate_limiter: limits how much the screen shows of one process.
+    screen shows the first lines and now and then the number of lines it dropped. `show_all` also
+    shows output that otherwise goes to the log files only.
     """
 
     def __init__(

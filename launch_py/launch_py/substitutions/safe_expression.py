@@ -135,12 +135,7 @@ class _Evaluation:
         self._work = 0
 
     def value(self, node: ast.expr, local: Mapping[str, Any]) -> Any:
-        """Return the value of a node.
-
-        Args:
-            node: the node.
-            local: the variables of the comprehensions around it.
-        """
+        """Return the value of a node, with the variables of the comprehensions around it."""
         return self._checked(self._value(node, local))
 
     def _value(self, node: ast.expr, local: Mapping[str, Any]) -> Any:

@@ -92,10 +92,7 @@ class HandlerThread:
 
     It is used during the shutdown. A handler that blocked the loop's thread would prevent it from
     stopping processes and from seeing a second Ctrl-C. All methods belong to the loop's thread.
-
-    Args:
-        loop: the event loop.
-        on_timeout: called once when a handler has taken too long.
+    `on_timeout` is called once when a handler has taken too long.
     """
 
     def __init__(self, loop: EventLoop, on_timeout: Callable[[], None]) -> None:

@@ -62,10 +62,6 @@ def space_bar_watched(fd: int, press: Callable[[], None]) -> Iterator[None]:
 
     In the background nothing is read, because the keys belong to the shell. Without a terminal
     nothing happens.
-
-    Args:
-        fd: standard input.
-        press: called for each press.
     """
     if not is_in_foreground(fd):
         yield

@@ -139,10 +139,7 @@ def start_of_program(entered_s: float) -> float:
     """Return when this program was started, on `time.monotonic`, before its interpreter started.
 
     A shell may have exec'd this program, as in `bash -c "pip install . && arm launch"`. The age of
-    the process is then ignored.
-
-    Args:
-        entered_s: when its first line ran, on `time.monotonic`.
+    the process is then ignored. `entered_s` is when its first line ran, on the same clock.
     """
     forked_s = _forked_s()
     return forked_s if 0.0 <= entered_s - forked_s <= LONGEST_INTERPRETER_START_S else entered_s

@@ -40,13 +40,8 @@ class Replacement:
     """Ends processes of another launch, by SIGINT and then SIGTERM; belongs to the loop's thread.
 
     It refers to each process by a pidfd, so it cannot hit a later process with the same id. It
-    never uses SIGKILL, because a killed process stays on the graph for a while.
-
-    Args:
-        loop: the event loop.
-        pids: the processes to end; those that have ended already are skipped.
-        refuse: called with an error message if one does not end.
-        delays: how long to wait after each signal.
+    never uses SIGKILL, because a killed process stays on the graph for a while. Those that have
+    ended already are skipped. `refuse` is called with an error message if one does not end.
     """
 
     def __init__(
@@ -128,12 +123,7 @@ Census = Mapping[str, Sequence[int | None]]
 class NameGuard:
     """Compares the nodes of one launch with those on the graph; belongs to the loop's thread.
 
-    Args:
-        loop: the event loop.
-        probes: looks at the graph.
-        runner: starts the processes.
-        reporter: tells the user what happens.
-        replace: whether to end processes whose nodes have a name of this launch.
+    `replace` ends processes whose nodes have a name of this launch.
     """
 
     def __init__(
@@ -166,9 +156,7 @@ class NameGuard:
     def look(self, steps: Sequence[ProcessStep], refuse: Callable[[str], None]) -> None:
         """Look up the node names of these steps, unless hardly any running node can have one.
 
-        Args:
-            steps: the steps that are about to start.
-            refuse: called with an error message if a node must not be started or must be stopped.
+        `refuse` is called with an error message if a node must not be started or must be stopped.
         """
         self._refuse = refuse
         for domain, environment in self._domains(steps).items():

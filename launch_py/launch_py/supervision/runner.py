@@ -32,9 +32,7 @@ PROBE_COMMAND = (sys.executable, "-P", "-c", "from launch_py.ros.probe import ma
 class ProbeClient:
     """Watches conditions by probe processes, one for each ROS domain; belongs to the loop's thread.
 
-    Args:
-        loop: the event loop.
-        log_file: receives the stderr of the probes.
+    `log_file` receives the stderr of the probes.
     """
 
     def __init__(self, loop: EventLoop, log_file: Path) -> None:
@@ -49,16 +47,9 @@ class ProbeClient:
         on_met: Callable[[], None],
         on_failed: Callable[[str], None],
     ) -> Callable[[], None]:
-        """Call back once the condition is met, seen from a process with this environment.
+        """Watch a condition from a process with this environment; return a function to stop that.
 
-        Args:
-            condition: the condition to watch.
-            environment: the environment of the probe process.
-            on_met: called when the condition is met.
-            on_failed: called instead, with the reason, if the condition cannot be watched.
-
-        Returns:
-            A function that stops watching.
+        `on_met` is called when it is met, or `on_failed`, with the reason, if it cannot be watched.
         """
         fields = {"kind": type(condition).__name__, **asdict(condition)}
         return self._process_for(environment).watch(fields, _Watch(on_met, on_failed))
@@ -69,15 +60,10 @@ class ProbeClient:
         on_seen: Callable[[Mapping[str, Any]], None],
         on_failed: Callable[[str], None],
     ) -> Callable[[], None]:
-        """Call back with the nodes on the graph now and whenever they change.
+        """Call back with the graph's nodes now and at each change; return a function to stop that.
 
-        Args:
-            environment: the environment of the probe process.
-            on_seen: called with the nodes; see `find_nodes` of `launch_py.ros.probe`.
-            on_failed: called instead, with the reason, if the graph cannot be watched.
-
-        Returns:
-            A function that stops watching.
+        The nodes are those of `find_nodes` of `launch_py.ros.probe`. `on_failed` is called instead,
+        with the reason, if the graph cannot be watched from this environment.
         """
         watch = _Watch(lambda: None, on_failed, on_seen)
         return self._process_for(environment).watch({"kind": "Nodes"}, watch)
@@ -223,14 +209,8 @@ class _ProbeProcess:
 class LocalRunner:
     """Gives each process its environment, its generated files and its probes.
 
-    Args:
-        loop: the event loop.
-        environment: the variables that every process gets.
-        logs: the folder for generated files.
-        probes: watches conditions.
-        observe_segments: called before SIGKILL is sent to a process, which then leaves its
-            shared-memory files.
-        on_settled: called when everything is ready.
+    `observe_segments` is called before SIGKILL is sent to a process, which then leaves its
+    shared-memory files; `on_settled` when everything is ready.
     """
 
     def __init__(

@@ -169,12 +169,7 @@ def run_plan(plan: LaunchPlan, environ: Mapping[str, str], options: LaunchOption
 class _LaunchSession:
     """Owns all objects of one launch; runs in the supervisor's process.
 
-    Args:
-        plan: the plan to execute.
-        environ: the environment of the supervisor.
-        options: the options of the launch.
-        logs: the log folder.
-        foreground_pid: the process that the user started. The launch ends with it.
+    It ends with `foreground_pid`, the process that the user started.
     """
 
     def __init__(

@@ -39,12 +39,7 @@ from launch_py.supervision.managed_process import ManagedProcess, ProcessRunner,
 
 
 class StepSchedule:
-    """Returns each step once all its triggers have happened; belongs to the loop's thread.
-
-    Args:
-        loop: the event loop, for the steps with a delay.
-        has_happened: returns whether a trigger has happened.
-    """
+    """Returns each step once all its triggers have happened; belongs to the loop's thread."""
 
     def __init__(self, loop: EventLoop, has_happened: Callable[[Trigger], bool]) -> None:
         self._loop = loop
@@ -126,13 +121,8 @@ class LaunchFailure:
 class Supervisor:
     """Executes one plan; belongs to the loop's thread.
 
-    Args:
-        plan: the plan.
-        loop: the event loop.
-        runner: starts processes and watches conditions.
-        reporter: tells the user what happens.
-        summary: what to show when everything is ready.
-        started_s: the loop's time at which the launch began.
+    `started_s` is the loop's time at which the launch began, and `summary` is shown when everything
+    is ready.
     """
 
     def __init__(

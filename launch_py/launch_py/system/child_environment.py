@@ -45,14 +45,9 @@ def default_environment(
     """Return the variables that the supervisor adds to the environment of every process.
 
     Variables that the user has set keep their value; AMENT_PREFIX_PATH is extended. NOTIFY_SOCKET
-    is always the supervisor's own, because an inherited one belongs to the process that started
-    the supervisor.
-
-    Args:
-        environ: the supervisor's own environment.
-        log_folder: the folder for log files that the processes write themselves.
-        notify_address: the address of the supervisor's notification socket.
-        colours: whether the output goes to a terminal in colour.
+    is always the supervisor's own, because an inherited one belongs to the process that started the
+    supervisor. `log_folder` is for log files that the processes write themselves; `colours` is
+    whether the output goes to a terminal in colour.
     """
     defaults = {RANGE: "LOCALHOST", "PYTHONUNBUFFERED": "1", **shipped_profile(environ)}
     if log_folder is not None:

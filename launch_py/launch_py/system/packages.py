@@ -278,11 +278,7 @@ class Packages:
         return [node for script, node in self._entry_points(NODES) if script == executable]
 
     def stand_in(self, program: str) -> tuple[str, ...] | None:
-        """Return the command line that replaces a program, or None if nothing replaces it.
-
-        Args:
-            program: its name or path.
-        """
+        """Return the command line that replaces a program, by name or path; None if none does."""
         name = os.path.basename(program)
         for known, target in self._entry_points(PROGRAMS):
             if known == name:

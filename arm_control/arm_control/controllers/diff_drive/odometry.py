@@ -30,12 +30,7 @@ class PlanarPose:
     heading: float = 0.0
 
     def moved(self, distance: float, turn: float) -> "PlanarPose":
-        """Return the pose at the end of an arc.
-
-        Args:
-            distance: along the arc, in m; negative backwards.
-            turn: change of the heading along the arc, in rad.
-        """
+        """Return the pose after an arc: its distance in m, negative backwards, its turn in rad."""
         # The direction of an arc's chord is the mean of both headings. For a small turn this
         # becomes the second-order Runge-Kutta step, so straight motion needs no formula of its own.
         half = turn / 2
@@ -87,13 +82,7 @@ class Odometry:
         self._speeds: deque[tuple[float, float]] = deque(maxlen=window)
 
     def move(self, distance: float, turn: float, period_s: float) -> None:
-        """Add an arc.
-
-        Args:
-            distance: along the arc, in m.
-            turn: change of the heading, in rad.
-            period_s: duration; above 0.
-        """
+        """Add an arc: its distance in m, its change of heading in rad, its duration, above 0."""
         self.pose = self.pose.moved(distance, turn)
         self._speeds.append((distance / period_s, turn / period_s))
         count = len(self._speeds)

@@ -49,11 +49,7 @@ class SpeedLimits:
         return replace(self, **dict.fromkeys(removed, nan))
 
     def deprecations(self, prefix: str) -> list[str]:
-        """Return a sentence for each deprecated parameter that is used.
-
-        Args:
-            prefix: of the parameters' names, 'linear.x.'.
-        """
+        """Return a sentence for each deprecated parameter in use; `prefix` is like 'linear.x.'."""
         sentences = [
             f"parameter '{prefix}{switch}' is deprecated: remove it, and set .nan in "
             f"{', '.join(bounds)} where there is no bound"
@@ -70,8 +66,7 @@ class SpeedLimits:
     def check(self, prefix: str) -> None:
         """Raise `ParameterError` for a bound that has the wrong sign or forbids every motion.
 
-        Args:
-            prefix: of the parameters' names, 'linear.x.'.
+        `prefix` is that of the parameters' names, 'linear.x.'.
         """
         for bound in fields(self):
             if bound.name not in _BOUNDS:
@@ -144,12 +139,7 @@ class SpeedLimiter:
         self.speed, self._change = state
 
     def limit(self, wanted: float, period_s: float) -> float:
-        """Return the speed for a cycle.
-
-        Args:
-            wanted: target speed.
-            period_s: time since the last cycle; above 0.
-        """
+        """Return the speed for a cycle, `period_s` above 0 after the last one."""
         change = wanted - self.speed
         # The jerk of a braking robot is not limited: that would make the speed oscillate about the
         # target.

@@ -102,11 +102,7 @@ class GpioCommandController(Controller[GpioCommandParameters]):
 
     @run_input
     def offer(self, names: Sequence[str], values: Sequence[float]) -> str:
-        """Set these interfaces in the next cycle; any thread.
-
-        Args:
-            names: full names, such as 'lamp/on'.
-            values: a value for each.
+        """Set these interfaces, by full names such as 'lamp/on', in the next cycle; any thread.
 
         Returns:
             Why it was refused, as a whole; empty if it was accepted.

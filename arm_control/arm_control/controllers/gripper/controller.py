@@ -91,10 +91,8 @@ class _GoalWatch:
     def judge(self, error: float, velocity: float, period_s: float) -> _GripperStatus:
         """Return the progress of the goal after a period.
 
-        Args:
-            error: signed distance to the goal; NaN if the position is unknown.
-            velocity: measured velocity; NaN if unknown.
-            period_s: time since the last call, or since the goal started.
+        `error` is the signed distance to the goal; it and the velocity are NaN if unknown. The
+        period begins with the last call, or with the goal.
         """
         if not (isfinite(error) and isfinite(velocity)):
             self.still_s, self.lost_s = 0.0, self.lost_s + period_s
@@ -192,11 +190,7 @@ class GripperController(GoalController[ParametersT], Generic[ParametersT]):
     ) -> float:
         """Write the commands of one cycle.
 
-        Args:
-            target: set-point of the joint.
-            position: position of the joint, in rad or m.
-            velocity: velocity of the joint, in rad/s or m/s.
-            period_s: time since the last cycle.
+        Position and velocity are those of the joint, in rad or m, and per second.
 
         Returns:
             The effort to report in the result, in N m or N.

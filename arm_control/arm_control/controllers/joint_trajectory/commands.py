@@ -137,11 +137,8 @@ class CommandWriter:
     ) -> None:
         """Compute `state.output` and write it.
 
-        Args:
-            state: the current state, including its errors.
-            upcoming: set-point at the end of the period, shape (4, n).
-            period_s: length of the period.
-            requested_scaling: speed scaling factor, for hardware that supports it.
+        The state includes its errors. `upcoming` (4, n) is the set-point at the end of the period;
+        the scaling is for hardware that supports it.
         """
         output = state.output
         if self._pid is not None:

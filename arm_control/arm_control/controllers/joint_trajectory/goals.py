@@ -255,11 +255,9 @@ class Tolerances:
     ) -> "Tolerances":
         """Make tolerances from the controller's parameters.
 
-        Args:
-            path: position tolerances along the path, shape (n,).
-            goal: position tolerances at the end, shape (n,).
-            stopped_velocity: velocity tolerance of every joint at the end.
-            goal_time_s: how late the goal may be reached.
+        The tolerances of positions along the path and at the end have the shape (n,), that of
+        velocities at the end holds for every joint. `goal_time_s` is how late the goal may be
+        reached.
         """
         on_the_way, at_end = np.zeros((2, CHECKED_ROWS, len(path)))
         on_the_way[POSITION] = path

@@ -68,9 +68,7 @@ class Spline(StateValue):
     def __init__(self, times_s: Array, motions: Array) -> None:
         """Compute the polynomials.
 
-        Args:
-            times_s: strictly increasing, shape (m,), m >= 1.
-            motions: motions at these times, shape (m, 4, n); every position is known.
+        The times (m,) increase strictly, m >= 1; every position in the motions (m, 4, n) is known.
         """
         self._knots_s: list[float] = times_s.tolist()
         self.end_s = self._knots_s[-1]
@@ -107,12 +105,8 @@ def segment_polynomials(start: Array, end: Array, duration_s: Array) -> Array:
 
     The base is linear through both positions. If the velocities at both ends are known, their
     difference from its slope is added as a cubic that vanishes at both ends; if the accelerations
-    are known too, their difference from the result is added as a quintic.
-
-    Args:
-        start: motions, shape (m, 4, n).
-        end: motions, shape (m, 4, n).
-        duration_s: shape (m,).
+    are known too, their difference from the result is added as a quintic. The motions have the
+    shape (m, 4, n), the durations (m,).
 
     Returns:
         Coefficients of position and of effort, lowest power first, shape (m, 2, 6, n).

@@ -231,12 +231,7 @@ class ActiveGoal:
         )
 
     def end(self, result: GoalResult, detail: str = "") -> None:
-        """End the goal, if there is one.
-
-        Args:
-            result: the result.
-            detail: an addition for the log.
-        """
+        """End the goal, if there is one; the detail is for the log."""
         if self.request is None:
             return
         goal, self.request = self.request, None

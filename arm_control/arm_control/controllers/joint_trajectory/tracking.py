@@ -440,8 +440,7 @@ class TrajectoryTracker:
     def _check(self, error: Array) -> None:
         """Stop if a tolerance is violated; end the goal when its result is known.
 
-        Args:
-            error: errors of position and, if checked, velocity and acceleration; shape (k, n).
+        The errors (k, n) are those of position and, if checked, velocity and acceleration.
         """
         active = self._active
         tolerances, late_s = active.tolerances, active.late_s

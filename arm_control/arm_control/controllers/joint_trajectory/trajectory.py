@@ -177,11 +177,8 @@ class Trajectory(StateValue):
     ) -> None:
         """Convert a request.
 
-        Args:
-            request: a valid request, see `find_fault`.
-            joints: the controller's joints.
-            interpolation: interpolation between the points.
-            is_provisional: whether its start time has yet to be checked.
+        The request is valid, see `find_fault`; if `is_provisional`, its start time has yet to be
+        checked.
         """
         columns = np.array([joints.index(name) for name in request.joint_names], dtype=np.intp)
         self.stamp_s = request.stamp_s
@@ -244,13 +241,7 @@ class Trajectory(StateValue):
 
 
 def _hold_joints(motions: Array, held: NDArray[np.bool_], position: Array) -> Array:
-    """Return waypoints in which some joints are held.
-
-    Args:
-        motions: waypoints, shape (m, 4, n).
-        held: which joints are held, shape (n,); at least one is not.
-        position: their positions, shape (n,); other joints' values are ignored.
-    """
+    """Return waypoints (m, 4, n) whose `held` joints (n,), not all, stay at `position` (n,)."""
     motions = motions.copy()
     # Held joints get zeros where the others have numbers, so that the spline's degree stays the
     # same.
@@ -265,12 +256,8 @@ def integrate(times_s: Array, motions: Array, start: Array) -> Array:
 
     A missing position is integrated from the velocities at this point and the previous one, by the
     trapezoidal rule; a missing velocity likewise from the accelerations. Missing values in the
-    integrand count as 0.
-
-    Args:
-        times_s: times of the waypoints since the start, shape (m,).
-        motions: waypoints, shape (m, 4, n).
-        start: motion before the first one, shape (4, n); its position is known.
+    integrand count as 0. Shapes: the times since the start (m,), the waypoints (m, 4, n), and
+    `start`, the motion before them, (4, n), whose position is known.
     """
     chain = np.concatenate([start[None], motions])
     # A first point in the past is not integrated from the start.

@@ -41,10 +41,7 @@ def find_fault(
 ) -> GoalRefusal | None:
     """Return the first fault of a trajectory, or None.
 
-    Args:
-        request: the trajectory.
-        parameters: the controller's parameters.
-        now_s: the controller's time, for trajectories with a stamp; -inf if unknown.
+    `now_s`, the controller's time, is for trajectories with a stamp; -inf if unknown.
     """
     for code, faults in (
         (ErrorCode.INVALID_JOINTS, _count_faults(request, parameters)),
@@ -168,14 +165,9 @@ def velocity_violations(
 ) -> str | None:
     """Return which joint a trajectory drives beyond its velocity limit, or None.
 
-    A quick check for trajectories that are executed anyway: it considers the velocity at each
-    point and the mean velocity from the previous one. A profile may be faster in between.
-
-    Args:
-        trajectory: the requested trajectory.
-        model: the joints.
-        start: positions from which it starts, shape (n,).
-        offset_s: time from now to its start.
+    A quick check for trajectories that are executed anyway: it considers the velocity at each point
+    and the mean velocity from the previous one. A profile may be faster in between. The
+    trajectory starts `offset_s` from now, at the positions `start`, shape (n,).
     """
     due_s = trajectory.times_s + offset_s
     coming = due_s > RESOLUTION_S
@@ -204,14 +196,9 @@ def limit_violations(
 ) -> GoalRefusal | None:
     """Return which of the checked limits a profile violates, or None.
 
-    The motion between waypoints is checked at a few samples. A joint that is already beyond a
-    limit may stay there or move back, but not further.
-
-    Args:
-        profile: the profile.
-        times_s: times of its waypoints, shape (m,).
-        present: measured and commanded positions, shape (k, n); NaN if unknown.
-        configuration: which limits are checked, and the limits.
+    The motion between waypoints is checked at a few samples. A joint that is already beyond a limit
+    may stay there or move back, but not further. `times_s` (m,) are the times of its waypoints; the
+    present positions (k, n) are measured and commanded, NaN if unknown.
     """
     knots_s = np.concatenate([[0.0], times_s[times_s > 0.0]])
     fractions = np.arange(SAMPLES_PER_SEGMENT) / SAMPLES_PER_SEGMENT

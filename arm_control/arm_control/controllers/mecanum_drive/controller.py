@@ -132,11 +132,8 @@ class MecanumSink(Protocol):
     ) -> None:
         """Publish one cycle.
 
-        Args:
-            time_s: the time of the cycle.
-            odometry: where the robot is and how fast it moves.
-            wheels: measured velocities in rad/s in the order of `WHEELS`, shape (4,).
-            reference: the commanded twist; NaN if there is none.
+        The measured velocities of the wheels, in rad/s, shape (4,), are in the order of `WHEELS`;
+        the reference is NaN if there is none.
         """
         ...
 

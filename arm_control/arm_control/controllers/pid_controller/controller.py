@@ -161,12 +161,7 @@ class PidStateSink(Protocol):
     """Receives the controller's state on the loop thread."""
 
     def publish(self, time_s: float, state: Array) -> None:
-        """Publish one state; the array is reused for the next one.
-
-        Args:
-            time_s: stamp.
-            state: shape (n, len(STATE_FIELDS)), one row per degree of freedom.
-        """
+        """Publish one state, (n, len(STATE_FIELDS)); the array is reused for the next one."""
         ...
 
     def publish_terms(self, time_s: float, dof: int, terms: PidTerms) -> None:

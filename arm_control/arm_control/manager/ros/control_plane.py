@@ -157,9 +157,7 @@ class ControlPlane:
     ) -> SwitchResult:
         """Deactivate and activate controllers in one step.
 
-        Args:
-            request: the controllers.
-            timeout_s: how long to wait for the loop to start it, in wall time; 0 for the default.
+        `timeout_s` is how long to wait for the loop to start it, in wall time; 0 for the default.
         """
         timeout_s = timeout_s or DEFAULT_SWITCH_TIMEOUT_S
         with self._lock:

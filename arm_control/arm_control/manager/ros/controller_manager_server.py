@@ -271,13 +271,9 @@ class ControllerManagerServer:
     ) -> None:
         """Offer the services.
 
-        Args:
-            node: the manager's node, not yet in an executor.
-            manager: the core, which belongs to the loop thread.
-            loop: runs it; already started, paused or not.
-            executor: serves the nodes of controllers and components.
-            robot_description: the hardware's URDF.
-            descriptions: the node's subscription, if the URDF came from a topic.
+        The node is not in an executor yet, and the loop has been started, paused or not. The
+        executor serves the nodes of controllers and components. `descriptions` is the node's
+        subscription, if the URDF came from a topic.
         """
         self._node = node
         self._manager = manager

@@ -92,13 +92,7 @@ class ControllerNode(ParameterNode):
     ) -> None:
         """Make the node and declare the parameters.
 
-        Args:
-            controller: the core.
-            type_name: its type string, for messages.
-            namespace: the manager's namespace.
-            arguments: ROS arguments for this node only.
-            loop: runs the controller.
-            give_clock: gives the node the manager's clock.
+        The namespace and the clock are the manager's; the ROS arguments are for this node only.
 
         Raises:
             ParameterError: a given parameter has the wrong type.

@@ -114,10 +114,7 @@ class ParameterNode(Node):
     def warn_of_unknown(self, known: Iterable[str], owner: str, others: Iterable[str] = ()) -> None:
         """Warn of given parameters that are unknown.
 
-        Args:
-            known: names of this node's parameters.
-            owner: owner of the parameters, for the message.
-            others: names that are known to another node with the same arguments.
+        The `others` are known to another node with the same arguments.
         """
         sentence = unknown_parameters(self.given_parameters(), known, owner, others)
         if sentence:
