@@ -286,20 +286,7 @@ class LoadedControllers(dict[str, ManagedController]):
         """
         if not self._exported.references() and not self._exported.states():
             return self._newest_first()
-        ordered: dict[str, ManagedController] = {}
-        visited: set[str] = set()
-
-        def visit(controller: ManagedController) -> None:
-            if controller.name in visited:
-                return
-            visited.add(controller.name)
-            for earlier in self._earlier(controller):
-                visit(earlier)
-            ordered[controller.name] = controller
-
-        for controller in self._newest_first():
-            visit(controller)
-        return tuple(ordered.values())
+        return _depth_first(self._newest_first(), self._earlier)
 
     def from_below(self, controllers: Iterable[ManagedController]) -> tuple[ManagedController, ...]:
         """Return these with following controllers first; otherwise the order is kept.
@@ -307,20 +294,7 @@ class LoadedControllers(dict[str, ManagedController]):
         They are started in this order, and stopped in the reverse order.
         """
         wanted = tuple(controllers)
-        ordered: dict[str, ManagedController] = {}
-        visited: set[str] = set()
-
-        def visit(controller: ManagedController) -> None:
-            if controller.name in visited or controller not in wanted:
-                return
-            visited.add(controller.name)
-            for follower in self.following(controller):
-                visit(follower)
-            ordered[controller.name] = controller
-
-        for controller in wanted:
-            visit(controller)
-        return tuple(ordered.values())
+        return _depth_first(wanted, lambda c: (f for f in self.following(c) if f in wanted))
 
     def with_preceding(
         self, controllers: Iterable[ManagedController]
@@ -389,3 +363,23 @@ class LoadedControllers(dict[str, ManagedController]):
         return tuple(
             self[name] for name in dict.fromkeys(names) if name is not None and name in self
         )
+
+
+def _depth_first(
+    controllers: Iterable[ManagedController],
+    earlier: Callable[[ManagedController], Iterable[ManagedController]],
+) -> tuple[ManagedController, ...]:
+    """Return controllers, each after those that `earlier` returns for it; circles are cut open."""
+    ordered: dict[str, ManagedController] = {}
+    visited: set[str] = set()
+
+    def visit(controller: ManagedController) -> None:
+        if controller.name not in visited:
+            visited.add(controller.name)
+            for other in earlier(controller):
+                visit(other)
+            ordered[controller.name] = controller
+
+    for controller in controllers:
+        visit(controller)
+    return tuple(ordered.values())
