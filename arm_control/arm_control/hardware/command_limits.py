@@ -1,7 +1,6 @@
 """Keeps commands within the limits of the joints, all joints at once."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import Protocol
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,120 +94,78 @@ class _States:
         return self._values
 
 
-class _LimitRule(Protocol):
-    """Computes bounds for the next commands of one kind."""
+Rule = Callable[[_JointGroup, Values, Values, float], Band]
+"""Returns the lowest and the highest command of a group; the lowest never exceeds the highest.
 
-    def band(self, commands: Values, previous: Values, period_s: float) -> Band:
-        """Return the lowest and the highest command; the lowest never exceeds the highest.
-
-        The new commands affect the bounds only if neither the last command, NaN for none, nor the
-        state is known.
-        """
-        ...
+It takes the new commands, those of the last cycle, NaN for none, and the length of the cycle. The
+new commands affect the bounds only if neither the last command nor the state is known.
+"""
 
 
-class _PositionLimits:
-    """Limits positions to the bounds, and their change to the speed limit."""
-
-    def __init__(self, group: _JointGroup) -> None:
-        self._group = group
-
-    def band(self, commands: Values, previous: Values, period_s: float) -> Band:
-        """Return the lowest and the highest position."""
-        group = self._group
-        speed = group.velocity
-        if group.limits_acceleration:
-            # In the next cycle the joint can be at most one acceleration step faster than now.
-            present = np.nan_to_num(np.abs(group.velocities()))
-            speed = np.minimum(speed, present + group.acceleration * period_s)
-        origin = _origin(previous, group.positions(), commands)
-        low, high = group.soft_velocities(origin)
-        low = origin + np.maximum(low, -speed) * period_s
-        high = origin + np.minimum(high, speed) * period_s
-        # A joint does not step over a soft bound; a joint beyond one does not jump back.
-        low = np.maximum(low, np.minimum(group.soft_lower, origin))
-        high = np.minimum(high, np.maximum(group.soft_upper, origin))
-        return _clipped(low, group.lower, group.upper), _clipped(high, group.lower, group.upper)
+def _position_band(group: _JointGroup, commands: Values, previous: Values, period_s: float) -> Band:
+    """Limit positions to the bounds, and their change to the speed limit."""
+    speed = group.velocity
+    if group.limits_acceleration:
+        # In the next cycle the joint can be at most one acceleration step faster than now.
+        present = np.nan_to_num(np.abs(group.velocities()))
+        speed = np.minimum(speed, present + group.acceleration * period_s)
+    origin = _origin(previous, group.positions(), commands)
+    low, high = group.soft_velocities(origin)
+    low = origin + np.maximum(low, -speed) * period_s
+    high = origin + np.minimum(high, speed) * period_s
+    # A joint does not step over a soft bound; a joint beyond one does not jump back.
+    low = np.maximum(low, np.minimum(group.soft_lower, origin))
+    high = np.minimum(high, np.maximum(group.soft_upper, origin))
+    return _clipped(low, group.lower, group.upper), _clipped(high, group.lower, group.upper)
 
 
-class _VelocityLimits:
-    """Limits velocities to the speed limit, and so that no cycle ends beyond a bound."""
+def _velocity_band(group: _JointGroup, commands: Values, previous: Values, period_s: float) -> Band:
+    """Limit velocities to the speed limit, and so that no cycle ends beyond a bound.
 
-    def __init__(self, group: _JointGroup) -> None:
-        self._group = group
-
-    def band(self, commands: Values, previous: Values, period_s: float) -> Band:
-        """Return the lowest and the highest velocity; a joint beyond a bound may only go back."""
-        group = self._group
-        positions = group.positions()
-        low, high = group.soft_velocities(positions)
-        # fmin and fmax ignore the NaN of an unknown position.
-        low = np.fmax(low, np.minimum((group.lower - positions) / period_s, 0.0))
-        high = np.fmin(high, np.maximum((group.upper - positions) / period_s, 0.0))
-        if not group.limits_acceleration:
-            return low, high
-        origin = _origin(previous, group.velocities(), commands)
-        step = group.acceleration * period_s
-        # Clipped, not intersected: close to a bound the joint must brake, even beyond its
-        # acceleration limit.
-        return _clipped(origin - step, low, high), _clipped(origin + step, low, high)
+    A joint beyond a bound may only go back.
+    """
+    positions = group.positions()
+    low, high = group.soft_velocities(positions)
+    # fmin and fmax ignore the NaN of an unknown position.
+    low = np.fmax(low, np.minimum((group.lower - positions) / period_s, 0.0))
+    high = np.fmin(high, np.maximum((group.upper - positions) / period_s, 0.0))
+    if not group.limits_acceleration:
+        return low, high
+    origin = _origin(previous, group.velocities(), commands)
+    step = group.acceleration * period_s
+    # Clipped, not intersected: close to a bound the joint must brake, even beyond its
+    # acceleration limit.
+    return _clipped(origin - step, low, high), _clipped(origin + step, low, high)
 
 
-class _EffortLimits:
-    """Limits efforts; allows none further outwards at a position bound or above the speed limit."""
-
-    def __init__(self, group: _JointGroup) -> None:
-        self._group = group
-
-    def band(self, commands: Values, previous: Values, period_s: float) -> Band:
-        """Return the lowest and the highest effort."""
-        group = self._group
-        positions, velocities = group.positions(), group.velocities()
-        # A comparison with NaN is false, so an unknown state limits nothing.
-        low_end = ((positions <= group.lower) & (velocities <= 0.0)) | (
-            velocities < -group.velocity
-        )
-        high_end = ((positions >= group.upper) & (velocities >= 0.0)) | (
-            velocities > group.velocity
-        )
-        low = np.where(low_end, 0.0, -group.effort)
-        high = np.where(high_end, 0.0, group.effort)
-        if not group.k_velocity.any():
-            return low, high
-        slowest, fastest = group.soft_velocities(positions)
-        soft_low = group.k_velocity * (slowest - velocities)
-        soft_high = group.k_velocity * (fastest - velocities)
-        soft = (group.k_velocity > 0.0) & np.isfinite(velocities)
-        return (
-            _clipped(np.where(soft, soft_low, low), low, high),
-            _clipped(np.where(soft, soft_high, high), low, high),
-        )
+def _effort_band(group: _JointGroup, commands: Values, previous: Values, period_s: float) -> Band:
+    """Limit efforts; none further outwards at a position bound or above the speed limit."""
+    positions, velocities = group.positions(), group.velocities()
+    # A comparison with NaN is false, so an unknown state limits nothing.
+    low_end = ((positions <= group.lower) & (velocities <= 0.0)) | (velocities < -group.velocity)
+    high_end = ((positions >= group.upper) & (velocities >= 0.0)) | (velocities > group.velocity)
+    low = np.where(low_end, 0.0, -group.effort)
+    high = np.where(high_end, 0.0, group.effort)
+    if not group.k_velocity.any():
+        return low, high
+    slowest, fastest = group.soft_velocities(positions)
+    soft_low = group.k_velocity * (slowest - velocities)
+    soft_high = group.k_velocity * (fastest - velocities)
+    soft = (group.k_velocity > 0.0) & np.isfinite(velocities)
+    return (
+        _clipped(np.where(soft, soft_low, low), low, high),
+        _clipped(np.where(soft, soft_high, high), low, high),
+    )
 
 
-class _SymmetricLimits:
-    """Limits the magnitude of the commands."""
-
-    def __init__(self, bound: Values) -> None:
-        self._band = (-bound, bound)
-
-    def band(self, commands: Values, previous: Values, period_s: float) -> Band:
-        """Return the lowest and the highest command."""
-        return self._band
-
-
-def rule_for(kind: str, group: _JointGroup) -> _LimitRule:
-    """Return the rule for commands of a kind, one of `joint_limits.LIMITED`."""
-    match kind:
-        case "position":
-            return _PositionLimits(group)
-        case "velocity":
-            return _VelocityLimits(group)
-        case "effort":
-            return _EffortLimits(group)
-        case "acceleration":
-            return _SymmetricLimits(group.acceleration)
-        case _:
-            return _SymmetricLimits(group.jerk)
+_RULES: Mapping[str, Rule] = {
+    "position": _position_band,
+    "velocity": _velocity_band,
+    "effort": _effort_band,
+    "acceleration": lambda group, *_: (-group.acceleration, group.acceleration),
+    "jerk": lambda group, *_: (-group.jerk, group.jerk),
+}
+"""By the kind of the commands, those of `joint_limits.LIMITED`."""
 
 
 def _origin(previous: Values, states: Values, commands: Values) -> Values:
@@ -303,8 +260,8 @@ class _LimitedCommands:
         resources: ResourceManager,
     ) -> None:
         joints = [name.rpartition("/")[0] for name in names]
-        group = _JointGroup([limits[joint] for joint in joints], joints, resources)
-        self._rule = rule_for(kind, group)
+        self._group = _JointGroup([limits[joint] for joint in joints], joints, resources)
+        self._rule = _RULES[kind]
         self._names = names
         self._window = resources.loan_commands(names)
         self.previous = np.full(len(names), np.nan)
@@ -323,7 +280,7 @@ class _LimitedCommands:
     def enforce(self, period_s: float) -> None:
         """Clamp the claimed commands; leave the others as they are."""
         commands = self._window.read()
-        low, high = self._rule.band(commands, self.previous, period_s)
+        low, high = self._rule(self._group, commands, self.previous, period_s)
         allowed = np.where(self._held, np.minimum(np.maximum(commands, low), high), commands)
         self._window.write(allowed)
         given = np.isfinite(allowed)
