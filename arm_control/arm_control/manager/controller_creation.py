@@ -216,7 +216,8 @@ class ControllerStarter:
         Raises:
             ArmControlError: its type is unknown, or its name is taken.
         """
-        types = self._strings(f"{name}.type") or self._own_type(name)
+        types = self._strings(f"{name}.type")
+        types = types or self._parameters.own_type(name, self._namespace)
         type_name = only_type(name, types, self._of_manager)
         context = ControllerContext.of(name, self._manager.update_rate_hz, self._robot_description)
         controller = create_controller(type_name, context)
@@ -287,11 +288,6 @@ class ControllerStarter:
         if self._strings(f"{name}.node_options_args"):
             logger.warning("'%s.node_options_args' has no effect: there is no node", name)
         return {**given, **self._changes.get(name, {})}
-
-    def _own_type(self, name: str) -> tuple[str, ...]:
-        """Return the type in the controller's own entry, if any."""
-        value = self._parameters.own_entry(name, self._namespace, "type")
-        return (value,) if isinstance(value, str) else ()
 
     def _strings(self, name: str) -> tuple[str, ...]:
         """Return a parameter of the manager that is one string or several; empty for none."""

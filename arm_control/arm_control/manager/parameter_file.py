@@ -69,10 +69,11 @@ class ParametersByNode:
                 return entry[parameter]
         return None
 
-    def own_entry(self, controller: str, namespace: str, parameter: str) -> Any:
-        """Return a parameter from the controller's own entry, None if there is none."""
+    def own_type(self, controller: str, namespace: str) -> tuple[str, ...]:
+        """Return the type in the controller's own entry, if any."""
         entries = self._entries_by_name(controller, namespace)
-        return next((entry[parameter] for entry in entries if parameter in entry), None)
+        value = next((entry["type"] for entry in entries if "type" in entry), None)
+        return (value,) if isinstance(value, str) else ()
 
     def _entries_of_controller(
         self, controller: str, namespace: str

@@ -28,13 +28,7 @@ class LoggedProcess:
         process: the process.
     """
 
-    def __init__(
-        self,
-        name: str,
-        command: Sequence[str],
-        environment: Mapping[str, str],
-        stdin: int = subprocess.DEVNULL,
-    ) -> None:
+    def __init__(self, name: str, command: Sequence[str], environment: Mapping[str, str]) -> None:
         """Start it; it does not get the terminal.
 
         Raises:
@@ -46,16 +40,16 @@ class LoggedProcess:
         self._changed = threading.Condition()
         self._is_closed = False
         try:
-            self.process = self._start(command, stdin)
+            self.process = self._start(command)
         except OSError as error:
             raise BenchError(f"{name} cannot start: {error}") from error
         self._reader = threading.Thread(target=self._read, name=f"log of {name}", daemon=True)
         self._reader.start()
 
-    def _start(self, command: Sequence[str], stdin: int) -> "subprocess.Popen[str]":
+    def _start(self, command: Sequence[str]) -> "subprocess.Popen[str]":
         return subprocess.Popen(
             list(command),
-            stdin=stdin,
+            stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,

@@ -232,9 +232,8 @@ class ControlPlane:
         files = [*self._node.strings(f"{name}.params_file"), *parameter_files(self._node.arguments)]
         namespace = self._node.get_namespace()
         for path in files:
-            value = ControllerParameterFile(path).own_entry(name, namespace, "type")
-            if isinstance(value, str):
-                return (value,)
+            if own := ControllerParameterFile(path).own_type(name, namespace):
+                return own
         return ()
 
     def _make_node(self, name: str, type_name: str) -> ControllerNode:

@@ -177,7 +177,6 @@ class ControllerManagerNode(ParameterNode):
         self,
         arguments: Sequence[str] | None = None,
         *,
-        name: str = "controller_manager",
         namespace: str = "",
         clock: ProcessClock | None = None,
     ) -> None:
@@ -185,7 +184,6 @@ class ControllerManagerNode(ParameterNode):
 
         Args:
             arguments: command line of the process; default sys.argv.
-            name: name of the node.
             namespace: namespace of the node, its controllers and components.
             clock: the clock of a process that makes simulation time, for this node and those of
                 controllers and components, which then use simulation time; None for ROS's.
@@ -196,7 +194,7 @@ class ControllerManagerNode(ParameterNode):
         self.arguments = tuple(sys.argv if arguments is None else arguments)
         self._process_clock = clock
         super().__init__(
-            name,
+            "controller_manager",
             namespace=namespace,
             cli_args=[*manager_arguments(self.arguments), *(USE_SIM_TIME if clock else ())],
             use_global_arguments=False,
