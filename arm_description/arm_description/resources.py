@@ -156,11 +156,12 @@ class ResourceFinder:
 
     def _in_packages(self, scheme: str, rest: str) -> Iterator[Path]:
         name, _, inside = rest.partition("/")
-        # A URI that is joined from parts often has "//", which must not start an absolute path.
-        inside = inside.lstrip("/")
+        # RViz decodes "%20", too. A URI that is joined from parts often has "//", which must not
+        # start an absolute path.
+        ways = dict.fromkeys(way.lstrip("/") for way in (inside, unquote(inside)))
         if name in ("", ".", ".."):
             raise ResourceNotFoundError(f"'{scheme}{rest}' names no package")
-        if os.path.normpath(inside or ".").split(os.sep)[0] == "..":
+        if any(os.path.normpath(way or ".").split(os.sep)[0] == ".." for way in ways):
             raise ResourceNotFoundError(f"'{scheme}{rest}' leads out of the package '{name}'")
         is_elsewhere = False
         for place in self._places(scheme, name):
@@ -168,11 +169,11 @@ class ResourceFinder:
                 # A file missing from the user's package must not come from the suite's package of
                 # that name.
                 return
-            path = place.folder / inside
-            if os.path.exists(path):
+            paths = [place.folder / way for way in ways]
+            if any(map(os.path.exists, paths)):
                 self._remember(name, place)
             is_elsewhere = is_elsewhere or self._search.is_package(place.folder, name)
-            yield path
+            yield from paths
 
     def _places(self, scheme: str, name: str) -> Iterator[PackagePlace]:
         if scheme == "model://":

@@ -64,6 +64,12 @@ def test_a_model_is_found_in_a_package(tmp_path):
     assert resolve_uri("model://robot/meshes/a.dae", environ=ament(tmp_path)) == expected
 
 
+@pytest.mark.parametrize("file", ["a b.stl", "a%20b.stl"])
+def test_a_uri_in_a_package_may_be_percent_encoded(tmp_path, file):
+    expected = make(tmp_path / "share/robot/meshes" / file)
+    assert resolve_uri("package://robot/meshes/a%20b.stl", environ=ament(tmp_path)) == expected
+
+
 @pytest.mark.parametrize("host", ["", "localhost"])
 def test_a_file_uri_may_be_percent_encoded(tmp_path, host):
     expected = make(tmp_path / "a b.stl")
@@ -124,12 +130,26 @@ def test_names_that_no_file_can_have_are_not_found(name):
         ResourceFinder().package(name)
 
 
-@pytest.mark.parametrize("uri", ["package://robot/../other/a.stl", "model://robot/x/../../a.stl"])
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "package://robot/../other/a.stl",
+        "package://robot/%2e%2E/other/a.stl",
+        "package://robot/..%2Fother/a.stl",
+        "model://robot/x/../../a.stl",
+    ],
+)
 def test_a_uri_may_not_lead_out_of_its_package(tmp_path, uri):
     make(tmp_path / "share/other/a.stl")
     make(tmp_path / "share/a.stl")
     with pytest.raises(ResourceNotFoundError, match="leads out of the package 'robot'"):
         resolve_uri(uri, [tmp_path / "share"], ament(tmp_path))
+
+
+def test_an_encoded_slash_does_not_start_an_absolute_path(tmp_path):
+    outside = make(tmp_path / "a.stl")
+    expected = make(tmp_path / f"share/robot{outside}")
+    assert resolve_uri(f"package://robot/%2F{outside}", environ=ament(tmp_path)) == expected
 
 
 @pytest.mark.parametrize("scheme", ["package", "model"])
