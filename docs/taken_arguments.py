@@ -1,7 +1,7 @@
-"""Griffe extension: shows the arguments that a class takes from a dataclass.
+"""Griffe extensions: show the arguments of classes whose source does not list them.
 
-The source of such a class does not list them: `arm_sim.arguments.takes` gives them to `__init__`,
-and the dataclass of the settings has the help of each.
+`arm_sim.arguments.takes` gives a class's `__init__` those of a dataclass, which has the help of
+each. `arm_node.frozen` makes dataclasses, as Griffe knows them from `dataclasses` only.
 """
 
 import inspect
@@ -11,6 +11,7 @@ from typing import Any
 import griffe
 
 DECORATOR = "takes"
+FROZEN = "frozen"
 
 
 class TakenArguments(griffe.Extension):
@@ -27,6 +28,16 @@ class TakenArguments(griffe.Extension):
         taken = inspect.signature(found.__init__).parameters.values()
         method.parameters = griffe.Parameters(*map(_parameter, taken))
         cls.docstring = griffe.Docstring(inspect.getdoc(found) or "", parent=cls)
+
+
+class FrozenClasses(griffe.Extension):
+    """Makes Griffe read a class of `arm_node.frozen` as a dataclass."""
+
+    def on_class_members(self, *, cls: griffe.Class, **_: Any) -> None:
+        """Put the decorator in its place that Griffe knows."""
+        for each in cls.decorators:
+            if str(each.value) == FROZEN:
+                each.value = griffe.ExprName("dataclass", griffe.ExprName("dataclasses"))
 
 
 def _parameter(taken: inspect.Parameter) -> griffe.Parameter:

@@ -10,9 +10,9 @@ The parser's errors are one sentence and suggest similar names.
 import argparse
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any, NoReturn, Protocol
 
+from arm_node.frozen import frozen
 from arm_node.printable import printable
 
 EXIT_USAGE = 2
@@ -101,7 +101,7 @@ Run = Callable[[argparse.Namespace], int | None]
 """Runs a verb; its result is the exit code, None for 0."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class VerbFunction:
     """The function that runs a verb, with the verb's arguments."""
 

@@ -6,12 +6,12 @@ fast.
 
 import signal
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, cast
 
 from arm_cli.errors import ArmCliError
 from arm_cli.output import complain, say_document
+from arm_node.frozen import frozen
 from arm_node.messages import MessageValueError
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 EXIT_USAGE = 2
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Verb:
     """One verb.
 
@@ -59,7 +59,7 @@ class Verb:
         return parser
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PlainVerb:
     """A verb that parses its words itself.
 

@@ -9,13 +9,13 @@ import dataclasses
 import math
 import operator
 from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, dataclass
-from difflib import SequenceMatcher
+from dataclasses import MISSING
 from functools import cache
 from types import MappingProxyType
 from typing import Any, TypeGuard, get_args, get_origin, get_type_hints
 
 from arm_control.errors import ParameterError
+from arm_node.frozen import frozen
 
 NEAREST, MANY = 5, 15
 """How many known parameters a message names, if there are more than the second."""
@@ -25,7 +25,7 @@ _GROUPS_KEY = "arm_control.parameter_groups"
 _SCALARS = (bool, int, float, str)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ParameterSpec:
     """One parameter.
 
@@ -144,7 +144,7 @@ def parameter(
     return dataclasses.field(default=default, metadata={_METADATA_KEY: rules})
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Groups:
     """What `parameter_groups` says about a field."""
 
@@ -284,6 +284,9 @@ def known_parameters(unknown: str, known: Iterable[str]) -> str:
     names = list(known)
     if len(names) <= MANY:
         return f"known: {', '.join(names) or 'none'}"
+    # Imported here, because most names are known.
+    from difflib import SequenceMatcher
+
     matcher = SequenceMatcher(b=unknown)
 
     def likeness(name: str) -> float:

@@ -1,11 +1,10 @@
 """Snapshots of a controller manager's contents, as its list services return them."""
 
-from dataclasses import dataclass
-
 from arm_control.lifecycle import LifecycleState
+from arm_node.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class InterfaceStatus:
     """A command or state interface.
 
@@ -22,7 +21,7 @@ class InterfaceStatus:
     data_type: str = "double"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class HardwareComponentStatus:
     """A hardware component and its interfaces.
 
@@ -47,7 +46,7 @@ class HardwareComponentStatus:
     state_interfaces: tuple[InterfaceStatus, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ChainConnection:
     """Reference interfaces of one controller that another one commands.
 
@@ -60,7 +59,7 @@ class ChainConnection:
     reference_interfaces: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ControllerStatus:
     """A loaded controller.
 

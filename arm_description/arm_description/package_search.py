@@ -4,10 +4,10 @@ import os
 import re
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from arm_node.frozen import frozen
 from arm_node.user_file import read_text
 
 MODEL_PATH_VARIABLES = ("GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH")
@@ -29,7 +29,7 @@ SUITE = "installed with the suite"
 _MANIFEST_NAME = re.compile(r"<name>\s*([\w.-]+)\s*</name>")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PackagePlace:
     """A folder that may be a package, existing or not.
 

@@ -2,8 +2,10 @@
 
 import logging
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
+
+from arm_node.frozen import frozen
 
 MAX_NAMED = 5
 """How many kinds of missing things one line names; the log names all of them."""
@@ -41,7 +43,7 @@ _LEVELS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Finding:
     """One remark about one element of the description.
 

@@ -1,9 +1,9 @@
 """Derive the physics step from the control rate."""
 
 import math
-from dataclasses import dataclass
 
 from arm_gazebo.errors import TimingError
+from arm_node.frozen import frozen
 
 MAX_STEP_S = 0.002
 MIN_STEP_S = 1e-6
@@ -12,7 +12,7 @@ DIVIDES_WITHIN = 1e-6
 """Largest relative error at which a step counts as a divisor, because decimal steps are rounded."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PhysicsTiming:
     """One control period and the physics steps that fill it.
 

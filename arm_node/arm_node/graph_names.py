@@ -15,10 +15,10 @@ import struct
 import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from zlib import crc32
 
+from arm_node.frozen import frozen
 from arm_node.workarounds.local_profile import RANGE, STATIC_PEERS, use_general_profile
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ _CREDENTIALS = struct.Struct("3i")
 logger = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class GraphNames:
     """All names on the graph, hidden ones included.
 

@@ -9,8 +9,9 @@ the message says what the value must be, and `read_parameter` adds the name.
 import math
 from array import array
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import TypeGuard, TypeVar
+
+from arm_node.frozen import frozen
 
 Value = TypeVar("Value")
 Reader = Callable[[object], Value]
@@ -45,7 +46,7 @@ def read_flag(value: object) -> bool:
     return value
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class IntegerReader:
     """Reads a whole number.
 
@@ -68,7 +69,7 @@ class IntegerReader:
         return value
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NumberReader:
     """Reads a finite number.
 

@@ -15,21 +15,22 @@ _UNSAFE = (
     "\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"  # invisible, direction
     "\ud800-\udfff"  # surrogates, which no stream can encode
 )
-_ANY = re.compile(f"[\n{_UNSAFE}]")
-_ANY_BUT_INDENTED_LINES = re.compile(f"\n(?!  )|[{_UNSAFE}]")
-_POSITION = re.compile(r",? at /\S+\.cp?p?:\d+$")
-_ANY_BUT_LINES = re.compile(f"[{_UNSAFE}]")
+# `re` compiles each when it is first used, because many programs show no text from outside.
+_ANY = f"[\n{_UNSAFE}]"
+_ANY_BUT_INDENTED_LINES = f"\n(?!  )|[{_UNSAFE}]"
+_POSITION = r",? at /\S+\.cp?p?:\d+$"
+_ANY_BUT_LINES = f"[{_UNSAFE}]"
 
 
 def first_line(error: BaseException) -> str:
     """Return the first line of an error's message, without the C source position of rcl."""
     text = str(error).strip()
-    return _POSITION.sub("", text.splitlines()[0]) if text else type(error).__name__
+    return re.sub(_POSITION, "", text.splitlines()[0]) if text else type(error).__name__
 
 
 def printable(text: str) -> str:
     """Return a text as one safe line: newlines and control characters are escaped."""
-    return _ANY.sub(_escape, text)
+    return re.sub(_ANY, _escape, text)
 
 
 def printable_message(text: str) -> str:
@@ -38,12 +39,12 @@ def printable_message(text: str) -> str:
     A newline is kept only if the next line is indented, so that no part looks like a separate
     message.
     """
-    return _ANY_BUT_INDENTED_LINES.sub(_escape, text)
+    return re.sub(_ANY_BUT_INDENTED_LINES, _escape, text)
 
 
 def printable_document(text: str) -> str:
     """Return a text that is shown separately, such as a file; its newlines are kept."""
-    return _ANY_BUT_LINES.sub(_escape, text)
+    return re.sub(_ANY_BUT_LINES, _escape, text)
 
 
 def _escape(match: re.Match[str]) -> str:

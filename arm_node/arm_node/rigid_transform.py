@@ -5,8 +5,9 @@ For one frame at a time tuples are faster than NumPy arrays, and need no import.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import atan2, hypot
+
+from arm_node.frozen import frozen
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -16,7 +17,7 @@ GIMBAL_LOCK = 1e-9
 """Cosine of the pitch below which roll and yaw rotate about the same axis."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RigidTransform:
     """The pose of one frame in another; by default they coincide.
 

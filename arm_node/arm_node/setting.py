@@ -14,10 +14,10 @@ No ROS is imported here, because launch files read declarations before anything 
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, Protocol, TypeVar
 
+from arm_node.frozen import frozen
 from arm_node.parameter_values import (
     ParameterValueError,
     Reader,
@@ -63,7 +63,7 @@ class Parameters(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Setting:
     """The declaration of one setting.
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from arm_node.collection import collection_paused
+from arm_node.collection import imports_kept
 
 if TYPE_CHECKING:
     from arm_gazebo.world.contacts import Contact
@@ -62,7 +62,7 @@ def __getattr__(name: str) -> Any:
     # A public name is imported on first use: importing all of them takes as long as a start.
     if name not in _MODULE_OF:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    with _without_window_library(), collection_paused():
+    with _without_window_library(), imports_kept():
         value = getattr(import_module(_MODULE_OF[name]), name)
     globals()[name] = value
     return value

@@ -1,7 +1,6 @@
 """What the simulated robot measures: its joints as arrays, its hardware, its sensors."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,13 +8,14 @@ from numpy.typing import NDArray
 from arm_control.hardware.resource_manager import ResourceManager
 from arm_gazebo.hardware.simulated_sensors import SimulatedSensor
 from arm_gazebo.physics.physics import Physics
+from arm_node.frozen import frozen
 from arm_sim.errors import UnknownNameError
 from arm_sim.user_traceback import ends_at_the_caller
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class JointState:
     """The state of one joint.
 

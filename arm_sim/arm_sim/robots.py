@@ -1,13 +1,15 @@
 """The robots that have a name, as the launch files of these robots set them up."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from os import PathLike
+
+from arm_node.frozen import frozen
 
 AnyPath = str | PathLike[str]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NamedRobot:
     """A robot with its controllers and the world that it starts in.
 

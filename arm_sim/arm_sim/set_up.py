@@ -2,7 +2,6 @@
 
 import shlex
 from collections.abc import Mapping
-from dataclasses import dataclass
 from os import fspath, pathsep
 from typing import Any
 
@@ -13,12 +12,13 @@ from arm_gazebo.launching.robot_setup import SPAWN_AUTO, RobotSetup, set_up_robo
 from arm_gazebo.run.robot import ManagedRobot
 from arm_gazebo.run.run import SimulationRun
 from arm_gazebo.run.settings import SimulationSettings, simulation_settings
+from arm_node.frozen import frozen
 from arm_node.setting import given_values
 from arm_sim.arguments import SimulationArguments
 from arm_sim.robots import NAMED_ROBOTS, AnyPath, NamedRobot
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SimulationSetup:
     """A robot and a simulation, ready to be built.
 

@@ -29,7 +29,8 @@ from arm_sim import Simulation
 with Simulation("arm") as sim:
     sim["position_controller"].command([0.1, 0.1, 0.1, 0.1])
     sim.run(0.1)
-unneeded = {"rclpy", "std_msgs", "rcl_interfaces", "glfw", "trimesh", "cv2"}
+unneeded = {"rclpy", "std_msgs", "rcl_interfaces", "glfw", "trimesh", "cv2", "scipy"}
+unneeded |= {"argparse", "difflib", "html", "json", "numpy.ma"}
 print(sorted(unneeded & set(sys.modules)), os.environ.get("MUJOCO_GL"))
 """
 

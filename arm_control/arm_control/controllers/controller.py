@@ -4,7 +4,6 @@ import logging
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from typing import Any, ClassVar, Generic, TypeVar
 
@@ -19,6 +18,7 @@ from arm_control.state.encoding import encode
 from arm_description.urdf.description import Description, RobotDescription, text_of
 from arm_description.urdf.parser import ignore_remark, parse_urdf
 from arm_description.urdf.robot import Robot
+from arm_node.frozen import frozen
 
 
 class InterfaceKind(Enum):
@@ -31,7 +31,7 @@ class InterfaceKind(Enum):
     REGEX = "regex"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class InterfaceConfiguration:
     """The interfaces a controller wants, by full name ('j0/position') or by rule."""
 
@@ -97,12 +97,12 @@ class ReturnType(Enum):
     """The manager deactivates the controller; log the reason before returning this."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NoParameters:
     """The parameters of a controller that has none."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ControllerContext:
     """What a controller knows about its environment when it is created.
 

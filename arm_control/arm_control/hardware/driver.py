@@ -3,7 +3,7 @@
 import logging
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import Protocol, runtime_checkable
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from arm_control.errors import HardwareInfoError
 from arm_control.hardware.info import HardwareInfo
+from arm_node.frozen import frozen
 
 
 class HardwareReturn(Enum):
@@ -145,7 +146,7 @@ class SingleModeHardware(Protocol):
     modes: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class HardwareHealth:
     """What a driver knows about its own health.
 

@@ -2,18 +2,19 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from arm_control.errors import HardwareInfoError
 from arm_description.urdf.description import Description, RobotDescription, as_description
 from arm_description.urdf.element import UrdfElement
 from arm_description.urdf.robot import Mimic
 from arm_description.urdf.xml_document import finite_number
+from arm_node.frozen import frozen
 
 COMPONENT_TYPES = ("system", "actuator", "sensor")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class InterfaceInfo:
     """One command or state interface of a joint, sensor or GPIO, in rad or m and s.
 
@@ -44,7 +45,7 @@ class InterfaceInfo:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class JointInfo:
     """A joint of a component; also used for sensors and GPIOs.
 
@@ -66,7 +67,7 @@ class JointInfo:
     is_limited: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class HardwareInfo:
     """One `<ros2_control>` block.
 

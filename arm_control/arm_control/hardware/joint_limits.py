@@ -1,7 +1,7 @@
 """Reads the position, velocity, effort and other limits of joints from a robot description."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from arm_control.errors import HardwareInfoError
 from arm_control.hardware.info import InterfaceInfo, JointInfo, parse_hardware_info
@@ -9,12 +9,13 @@ from arm_description.errors import DescriptionError
 from arm_description.urdf.description import Description, as_description
 from arm_description.urdf.parser import ignore_remark, parse_urdf
 from arm_description.urdf.robot import Joint
+from arm_node.frozen import frozen
 
 LIMITED = ("position", "velocity", "effort", "acceleration", "jerk")
 """Command interfaces that can be limited."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SoftLimits:
     """A `<safety_controller>`: soft bounds within the position limits.
 
@@ -34,7 +35,7 @@ class SoftLimits:
 NO_SOFT_LIMITS = SoftLimits(-math.inf, math.inf, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class JointLimits:
     """Limits of one joint, in rad or m, s, N m or N; infinite if there is none.
 

@@ -1,11 +1,11 @@
 """Decides when the next tick is due, and measures how punctual the past ones were."""
 
 import logging
-from dataclasses import dataclass
 from math import nan
 
 from arm_control.loop.clock import Clock, MonotonicClock
 from arm_control.loop.supervision import RunRecord
+from arm_node.frozen import frozen
 
 CATCH_UP_S = 0.05
 """Delays up to this long are caught up; the rest of a longer delay is given up."""
@@ -17,7 +17,7 @@ KEPT = 0.99
 """From this fraction of the pace on, lost time is reported as a stall, not as a slow loop."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PacerStatistics:
     """How punctual a pacer's ticks have been so far, in wall time.
 

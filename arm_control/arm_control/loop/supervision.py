@@ -3,7 +3,6 @@
 import logging
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import nan
 
 import numpy as np
@@ -11,11 +10,12 @@ from numpy.typing import NDArray
 
 from arm_control.errors import ArmControlError, UnhandledFailureError
 from arm_control.loop.clock import MonotonicClock
+from arm_node.frozen import frozen
 
 _MICROSECONDS = 1e6
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Spread:
     """Statistics of a set of samples, in the unit of the samples."""
 
@@ -25,7 +25,7 @@ class Spread:
     maximum: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RunStatistics:
     """Statistics of the latest runs.
 
@@ -155,7 +155,7 @@ def failure_of(step: Callable[[], object], what: str) -> str:
         return f"{what} raised {type(error).__name__}: {error}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RunSupervision:
     """How runs of controllers and components are measured, and how exceptions are handled.
 

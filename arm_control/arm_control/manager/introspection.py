@@ -1,7 +1,6 @@
 """Snapshots and named values of a controller manager, under ros2_control's names."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from math import nan
 
 import numpy as np
@@ -11,6 +10,7 @@ from arm_control.lifecycle import LifecycleState, Transition
 from arm_control.loop.supervision import RunRecord, Spread
 from arm_control.manager.controller_manager import ControllerManager
 from arm_control.status import InterfaceStatus
+from arm_node.frozen import frozen
 
 
 class ManagerSnapshot:
@@ -43,7 +43,7 @@ class ManagerSnapshot:
         self.interfaces = self._manager.list_hardware_interfaces()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NamedValues:
     """Named values at one moment.
 

@@ -1,11 +1,12 @@
 """The controller manager's own parameters, under ros2_control's names."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from arm_control.parameters import parameter
+from arm_node.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ManagerPolicy:
     """The user's choices; the defaults are ros2_control's.
 
@@ -26,7 +27,7 @@ class ManagerPolicy:
     end_on_initial_state_failure: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RateBand:
     """Deviations of a rate, in Hz."""
 
@@ -34,7 +35,7 @@ class RateBand:
     error: float = parameter(10.0, "Deviation in Hz above which it is an error", above=0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MeanTimeBand:
     """Mean execution times, in microseconds."""
 
@@ -42,7 +43,7 @@ class MeanTimeBand:
     error: float = parameter(2000.0, "Microseconds above which it is an error", above=0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TimeDeviationBand:
     """Standard deviations of execution times, in microseconds."""
 
@@ -50,7 +51,7 @@ class TimeDeviationBand:
     error: float = parameter(200.0, "Microseconds above which it is an error", above=0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PeriodicityThresholds:
     """Thresholds of a rate's deviation from its nominal value."""
 
@@ -58,7 +59,7 @@ class PeriodicityThresholds:
     standard_deviation: RateBand = RateBand()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ExecutionTimeThresholds:
     """Thresholds of an execution time."""
 
@@ -66,14 +67,14 @@ class ExecutionTimeThresholds:
     standard_deviation: TimeDeviationBand = TimeDeviationBand()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _LoopThresholds:
     """Thresholds of the manager's loop."""
 
     periodicity: PeriodicityThresholds = PeriodicityThresholds()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RunThresholds:
     """Thresholds of controllers or components."""
 
@@ -81,7 +82,7 @@ class RunThresholds:
     execution_time: ExecutionTimeThresholds = ExecutionTimeThresholds()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DiagnosticThresholds:
     """All thresholds, with the names of ros2_control's parameters diagnostics.threshold.*."""
 
@@ -90,7 +91,7 @@ class DiagnosticThresholds:
     hardware_components: RunThresholds = RunThresholds()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _SwitchDefaults:
     """Defaults of switch requests."""
 
@@ -101,7 +102,7 @@ class _SwitchDefaults:
     )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Defaults:
     """Defaults of requests."""
 
@@ -118,7 +119,7 @@ class _Defaults:
     )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _InitialState:
     """Hardware components that are not activated at the start."""
 
@@ -131,21 +132,21 @@ class _InitialState:
     )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Overruns:
     """What to do when the loop is late."""
 
     print_warnings: bool = parameter(True, "Log when the loop cannot keep its pace")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Diagnostics:
     """How the manager's health is assessed."""
 
     threshold: DiagnosticThresholds = field(default_factory=DiagnosticThresholds)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DiagnosticUpdater:
     """How the manager's health is published."""
 
@@ -153,7 +154,7 @@ class DiagnosticUpdater:
     use_fqn: bool = parameter(False, "Whether reports name the node with its namespace")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ManagerSettings:
     """Parameters of the node /controller_manager."""
 

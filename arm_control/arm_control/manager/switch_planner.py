@@ -2,7 +2,6 @@
 
 import logging
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from enum import IntEnum
 
 from arm_control.errors import ControllerManagerError
@@ -13,6 +12,7 @@ from arm_control.manager.loaded_controllers import (
     ManagedController,
     unknown_controller,
 )
+from arm_node.frozen import frozen
 
 
 class Strictness(IntEnum):
@@ -28,7 +28,7 @@ class Strictness(IntEnum):
     """Like BEST_EFFORT, as in ros2_control Jazzy."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SwitchRequest:
     """Controllers to activate and deactivate in one step; one in both lists is restarted."""
 
@@ -42,7 +42,7 @@ class SwitchRequest:
         return self.strictness is Strictness.STRICT
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SwitchResult:
     """Whether a switch succeeded, with ros2_control's message."""
 
@@ -53,7 +53,7 @@ class SwitchResult:
 logger = logging.getLogger("controller_manager")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SwitchPlan:
     """The controllers to deactivate, then those to activate."""
 

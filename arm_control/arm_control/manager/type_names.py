@@ -6,7 +6,6 @@ type that the user has misspelt is a mistake.
 
 import re
 from collections.abc import Collection
-from difflib import SequenceMatcher, get_close_matches
 
 ONLY_IN_CPP = frozenset(
     {
@@ -48,6 +47,9 @@ _PLUGIN = re.compile(r"[A-Za-z]\w*(::\w+)*/[A-Za-z]\w*(::\w+)*")
 
 def near_types(type_name: str, known: Collection[str]) -> tuple[str, ...]:
     """Return at most three types with similar names, or else of that class, or of that package."""
+    # Imported here, as below, because the types of most files are known.
+    from difflib import get_close_matches
+
     folded = {name.lower(): name for name in sorted(known)}
     text = type_name.strip().lower()
     package, _, class_name = text.rpartition("/")
@@ -67,6 +69,8 @@ def is_misspelt(type_name: str, known: Collection[str]) -> bool:
     """
     if type_name in ONLY_IN_CPP:
         return False
+    from difflib import SequenceMatcher
+
     packages = {name.partition("/")[0] for name in known}
     if not _PLUGIN.fullmatch(type_name) or type_name.partition("/")[0] in packages:
         return True

@@ -7,7 +7,6 @@ a revolute one. So all joints of a message are computed at once.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +19,7 @@ from arm_description.transforms import (
     transform,
 )
 from arm_description.urdf.robot import Joint, Robot
+from arm_node.frozen import frozen
 from arm_node.names import listing
 from arm_node.rigid_transform import quaternion_product
 
@@ -78,7 +78,7 @@ def _motion(joint: Joint, position: float) -> NDArray[np.float64]:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Frame:
     """A child frame and its parent frame, by link name."""
 
@@ -86,7 +86,7 @@ class Frame:
     child: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Motion:
     """The transforms that depend on one kind of joint state message.
 

@@ -1,13 +1,13 @@
 """Triangles in memory, which every mesh file is converted to."""
 
 import warnings
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.errors import MeshFileError
+from arm_node.frozen import frozen
 
 LARGEST_BYTES = 500_000_000
 """Maximum size of a mesh file, also after unpacking."""
@@ -19,7 +19,7 @@ Color = tuple[float, float, float, float]
 Scale = tuple[float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MeshData:
     """One part of a mesh file, of one colour.
 

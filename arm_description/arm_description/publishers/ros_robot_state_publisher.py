@@ -4,7 +4,6 @@ import math
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 
 import numpy as np
 from geometry_msgs.msg import TransformStamped
@@ -25,6 +24,7 @@ from arm_description.kinematics.forward import Frame, Motion, TransformTree
 from arm_description.publishers.settings import StatePublisherSettings
 from arm_description.urdf.parser import parse_urdf
 from arm_node.executor_thread import ExecutorThread
+from arm_node.frozen import frozen
 from arm_node.names import listing
 from arm_node.parameters import declare_from, given_parameters
 from arm_node.printable import printable
@@ -122,7 +122,7 @@ class StateThrottle:
         self._published_ns.update(dict.fromkeys(names, stamp_ns))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _TransformGroup:
     """The transforms of joint states that name the same joints."""
 

@@ -8,9 +8,10 @@ same places.
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote_to_bytes
+
+from arm_node.frozen import frozen
 
 TARGET = "description_source"
 _INSTRUCTION = re.compile(rf"<\?{TARGET}\s([^?]*)\?>")
@@ -19,7 +20,7 @@ _MAX_OFFSET = 2000
 """Characters from the start within which the instruction must begin."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DescriptionSource:
     """Where a description comes from.
 

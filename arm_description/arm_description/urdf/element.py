@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 from arm_description.errors import UrdfError
 from arm_description.urdf.robot import Pose, Vector
 from arm_description.urdf.xml_document import XmlElement
+from arm_node.frozen import frozen
 
 NAMED = ("link", "joint")
 """Elements whose names messages use."""
@@ -14,7 +14,7 @@ QUATERNION, QUATERNION_VERSIONS = "quat_xyzw", ("1.1", "1.2")
 _ZERO: Vector = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Remark:
     """A problem of an element that does not make the description invalid."""
 

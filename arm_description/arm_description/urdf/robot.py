@@ -5,11 +5,12 @@ text, 0 for objects that were made without a text.
 """
 
 from collections.abc import Container, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from arm_description.errors import MimicCycleError, UrdfError
 from arm_description.urdf.joint_type import JointType
+from arm_node.frozen import frozen
 from arm_node.names import listing
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 Vector = tuple[float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Pose:
     """The pose of a frame in another: translation, then roll, pitch, yaw about fixed axes."""
 
@@ -34,7 +35,7 @@ class Pose:
         return transform(rotation_from_rpy(self.rpy), self.xyz)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Inertial:
     """Mass, and the inertia (ixx, ixy, ixz, iyy, iyz, izz) about the axes of `origin`."""
 
@@ -43,14 +44,14 @@ class Inertial:
     inertia: tuple[float, float, float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Box:
     """A box with its full side lengths, centred."""
 
     size: Vector
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Cylinder:
     """A cylinder along z, centred."""
 
@@ -58,14 +59,14 @@ class Cylinder:
     length: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sphere:
     """A sphere."""
 
     radius: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Capsule:
     """A cylinder along z, centred, of `length` without its two hemispherical ends."""
 
@@ -73,7 +74,7 @@ class Capsule:
     length: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mesh:
     """A mesh file as named in the URDF; see `resources.ResourceFinder`."""
 
@@ -84,7 +85,7 @@ class Mesh:
 Geometry = Box | Cylinder | Sphere | Capsule | Mesh
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Material:
     """A colour (red, green, blue, alpha, each 0 to 1) or a texture's URI, or only a name."""
 
@@ -93,7 +94,7 @@ class Material:
     texture: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Visual:
     """A visible shape."""
 
@@ -103,7 +104,7 @@ class Visual:
     material: Material | None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Collision:
     """A collision shape."""
 
@@ -112,7 +113,7 @@ class Collision:
     geometry: Geometry
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Link:
     """A rigid body, or only a frame if it has neither mass nor shapes."""
 
@@ -123,7 +124,7 @@ class Link:
     line: int = 0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class JointLimit:
     """Bounds of a joint; a continuous joint has `lower` -inf and `upper` inf."""
 
@@ -133,7 +134,7 @@ class JointLimit:
     velocity: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Dynamics:
     """Viscous damping and dry friction."""
 
@@ -141,7 +142,7 @@ class Dynamics:
     friction: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mimic:
     """Position = multiplier x position of `joint` + offset."""
 
@@ -154,7 +155,7 @@ class Mimic:
         return self.multiplier * leader + self.offset
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SafetyLimits:
     """The safety_controller element; a missing soft limit is infinite."""
 
@@ -164,7 +165,7 @@ class SafetyLimits:
     k_velocity: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Joint:
     """The connection of a child link to its parent; `axis` is a unit vector in the joint's frame.
 
@@ -188,7 +189,7 @@ class Joint:
         object.__setattr__(self, "type", JointType(self.type))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Robot:
     """Links and joints in document order; always one tree with one root link.
 

@@ -5,13 +5,13 @@ import re
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from arm_description.errors import DescriptionError, XacroError
 from arm_description.resources import ResourceFinder
 from arm_description.urdf.description_source import with_source
+from arm_node.frozen import frozen
 from arm_node.limited_yaml import YamlError, check_yaml
 from arm_node.user_file import UnusableFileError, read_text
 
@@ -57,7 +57,7 @@ _XACRO_NAMESPACE = "xmlns:xacro"
 """xacro ignores the namespace's URI, and several are in use."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class XacroExpansion:
     """The result of expanding a xacro file.
 

@@ -5,7 +5,6 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Protocol
 
@@ -17,6 +16,7 @@ from arm_gazebo.feed.schedule import FrameDue
 from arm_gazebo.feed.snapshot import CameraSnapshot
 from arm_gazebo.feed.socket_pair import CameraProgress, ModelMessage
 from arm_gazebo.sensors.camera import CameraSensor
+from arm_node.frozen import frozen
 
 if TYPE_CHECKING:
     from arm_gazebo.rendering.renderer import Renderer
@@ -62,7 +62,7 @@ class FrameSink(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CameraReport:
     """The figures of a camera over one time window.
 

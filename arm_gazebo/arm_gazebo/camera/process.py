@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from arm_description.package_search import share_folders, suite_package
 from arm_gazebo.errors import CameraError
 from arm_gazebo.feed.child_process import NOT_INHERITED, Spawn, WorkerProcess, describe_exit
 from arm_gazebo.sensors.camera import CameraSensor
+from arm_node.frozen import frozen
 from arm_node.workarounds.local_profile import (
     OF_FAST_DDS_2,
     OF_FAST_DDS_3,
@@ -27,7 +28,7 @@ EXIT_BACKEND = 3
 """Exit code of a camera process whose render backend does not work; another one should be tried."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CameraSettings:
     """Settings that do not change while the simulation runs.
 

@@ -21,13 +21,14 @@ tuning follows from these:
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.robot.actuation import RobotJoint
+from arm_node.frozen import frozen
 
 Array = NDArray[np.float64]
 Gears = tuple[tuple[int, float], ...]
@@ -60,7 +61,7 @@ MAX_SLIDE_M = 20.0
 """A wider range of a sliding joint, such as -1000 to 1000, does not count as a real limit."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MotionBounds:
     """Bounds on the set-point of one joint; rad or m, and per second.
 
@@ -75,7 +76,7 @@ class MotionBounds:
     slack: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ServoTuning:
     """Gains and bounds of the driven joints, arrays of shape (n,) in the joints' order.
 

@@ -1,10 +1,10 @@
 """Faults as people write them: `joint_stalled j0`, `sensor_noisy j0/position 0.01 7`."""
 
 import math
-from dataclasses import dataclass
 from enum import Enum
 
 from arm_gazebo.errors import FaultError
+from arm_node.frozen import frozen
 
 
 class FaultKind(Enum):
@@ -30,7 +30,7 @@ USAGE = {
 all of its channels."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Fault:
     """A fault.
 

@@ -1,6 +1,5 @@
 """A child process of the simulation: start it, watch it, end it."""
 
-import argparse
 import ctypes
 import logging
 import os
@@ -8,15 +7,19 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from arm_gazebo.errors import OrphanError
+
+if TYPE_CHECKING:
+    import argparse
 
 PR_SET_PDEATHSIG = 1
 NICENESS = 5
 """Software OpenGL uses all processors when it starts; the physics takes precedence."""
 
 
-def add_parent_arguments(parser: argparse.ArgumentParser) -> None:
+def add_parent_arguments(parser: "argparse.ArgumentParser") -> None:
     """Declare the arguments that every child process of the simulation takes."""
     parser.add_argument("--socket", type=int, required=True, help="inherited socket descriptor")
     parser.add_argument("--parent", type=int, required=True, help="process id of the simulation")

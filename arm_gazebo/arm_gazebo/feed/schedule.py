@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from arm_control.loop.schedule import Schedule
+from arm_node.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class StreamCount:
     """A camera's or a sensor's figures since the start.
 
@@ -29,7 +29,7 @@ class StreamCount:
     dropped: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FrameDue:
     """One picture to take.
 

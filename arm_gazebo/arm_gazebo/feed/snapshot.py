@@ -1,20 +1,20 @@
 """One state of the simulation as the cameras receive it: a small datagram."""
 
 import struct
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.errors import CameraError
 from arm_gazebo.feed.schedule import FrameDue
+from arm_node.frozen import frozen
 
 HEADER = struct.Struct("<IdHII")
 """Model version, time, and the numbers of frames, positions and mocap bodies that follow."""
 FRAME = struct.Struct("<HQQ")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CameraSnapshot:
     """The part of a state that a picture needs.
 

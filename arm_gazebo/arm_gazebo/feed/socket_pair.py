@@ -10,10 +10,10 @@ import select
 import socket
 import struct
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from arm_gazebo.errors import CameraError
 from arm_gazebo.feed.snapshot import CameraSnapshot
+from arm_node.frozen import frozen
 
 MODEL = b"M"
 SNAPSHOT = b"S"
@@ -26,7 +26,7 @@ BUFFER_BYTES = 1 << 20
 WAIT_MS = 250
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ModelMessage:
     """A new compiled model; the snapshots that follow belong to it.
 
@@ -39,7 +39,7 @@ class ModelMessage:
     file: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CameraProgress:
     """What the camera process has done with one camera's frames since it started.
 
@@ -54,7 +54,7 @@ class CameraProgress:
     dropped: int = 0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class FeedReport:
     """What the camera process has reported since the last call.
 

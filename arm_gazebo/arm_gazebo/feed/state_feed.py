@@ -3,7 +3,6 @@
 import os
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 import mujoco
@@ -13,6 +12,7 @@ from arm_gazebo.errors import CameraError
 from arm_gazebo.feed.schedule import FrameDue
 from arm_gazebo.feed.snapshot import CameraSnapshot
 from arm_gazebo.feed.socket_pair import CameraProgress, FeedEnd
+from arm_node.frozen import frozen
 
 MODEL_FILE_NAME = "camera-model"
 FRAMING_BYTES = 4096
@@ -178,7 +178,7 @@ class StateFeed:
             self._flowing = self._channel.send_model(self._version, self._model_file)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PreparedModel:
     """A model that a feed can show without delay."""
 

@@ -3,7 +3,6 @@
 import logging
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from arm_gazebo.hardware.simulated_gpios import SimulatedGpios
 from arm_gazebo.hardware.simulated_sensors import SensorStates, SimulatedSensor
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.robot.actuation import RobotJoint
+from arm_node.frozen import frozen
 from arm_node.index_slice import as_slice
 
 logger = logging.getLogger(__name__)
@@ -33,7 +33,7 @@ UNITS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _CommandInterface:
     """One command interface: the index of its value, its drive and its bounds."""
 
@@ -55,7 +55,7 @@ class _CommandInterface:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _LimitInterface:
     """A command interface that limits a drive's effort: the index of its value, and the drive."""
 

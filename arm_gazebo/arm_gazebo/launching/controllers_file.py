@@ -6,12 +6,13 @@ prefix. `$(var name)`, which drivers' files use for ROS 2's launch, means the sa
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
 from arm_gazebo.errors import ControllerTypeError, SimSettingsError
 from arm_gazebo.launching.settings_file import read_text
+from arm_node.frozen import frozen
 from arm_node.limited_yaml import YamlError
 from arm_node.names import listing
 from arm_node.parameter_file import PARAMETERS, parameters_by_node, read_parameters
@@ -26,7 +27,7 @@ ANYWHERE = "/**"
 _ARGUMENT = re.compile(r"\$\{\s*(\w+)\s*\}|\$\(\s*var\s+(\w+)\s*\)")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class StartableControllers:
     """The controllers to start, in the file's order.
 

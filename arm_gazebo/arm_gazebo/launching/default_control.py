@@ -6,9 +6,9 @@ parameter file.
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
-from html import escape
 from typing import TYPE_CHECKING, Any
+
+from arm_node.frozen import frozen
 
 if TYPE_CHECKING:
     from arm_control.hardware.info import HardwareInfo
@@ -37,7 +37,7 @@ _COMMENT = re.compile("<!--.*?-->", re.DOTALL)
 _END = re.compile(r"</robot\s*>(?!.*</robot\s*>)", re.DOTALL)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class HardwareJoints:
     """The moving joints of a robot by their hardware interfaces.
 
@@ -90,6 +90,9 @@ def with_hardware(urdf: str, robot: "Robot") -> str:
 
     Mimic joints have state interfaces only. Line numbers of the text do not change.
     """
+    # Imported here, because most robots have a block of their own.
+    from html import escape
+
     commanded = set(commandable_joints(robot))
     joints = "".join(
         f'<joint name="{escape(joint.name)}">'

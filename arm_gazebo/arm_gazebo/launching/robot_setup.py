@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +24,7 @@ from arm_gazebo.launching.default_control import (
     has_hardware,
     with_hardware,
 )
+from arm_node.frozen import frozen
 
 if TYPE_CHECKING:
     from arm_description.urdf.description import RobotDescription
@@ -33,7 +33,7 @@ SPAWN_AUTO = "auto"
 """Start every controller whose joints are not claimed yet."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RobotSetup:
     """A robot, ready to be simulated.
 

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
@@ -19,6 +18,7 @@ from arm_description.urdf.robot import Mesh
 from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh.cache import MeshCache
 from arm_gazebo.mesh.part import MeshPart
+from arm_node.frozen import frozen
 from arm_node.user_file import read_bytes
 
 T = TypeVar("T")
@@ -28,7 +28,7 @@ MULTI_FILE_SUFFIXES = (".gltf",)
 MATERIALS = re.compile(rb"^\s*mtllib\s+(\S.*?)\s*$", re.MULTILINE)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MeshAsset:
     """A mesh of the model: its name in the model and the colour from its file."""
 
@@ -54,6 +54,7 @@ class MeshLibrary:
         self._paths: dict[str, Path] = {}
         self._parts: dict[Path, tuple[MeshPart, ...]] = {}
         self._unusable: dict[Path, str] = {}
+        self._scaled: dict[tuple[Path, Scale], tuple[MeshPart, ...]] = {}
         self._assets: dict[tuple[Path, Scale, Callable[..., str]], tuple[MeshAsset, ...]] = {}
 
     def parts(self, mesh: Mesh) -> tuple[MeshPart, ...]:
@@ -63,11 +64,14 @@ class MeshLibrary:
             MeshError: the file cannot be found or read; the message names it.
         """
         path = self._resolve(mesh)
-        parts = self._read(path)
-        try:
-            return _drawable_parts(parts, lambda part: part.scaled(mesh.scale))
-        except MeshError as error:
-            raise MeshError(f"cannot use the mesh {path}: {error}") from error
+        key = (path, mesh.scale)
+        if key not in self._scaled:
+            parts = self._read(path)
+            try:
+                self._scaled[key] = _drawable_parts(parts, lambda part: part.scaled(mesh.scale))
+            except MeshError as error:
+                raise MeshError(f"cannot use the mesh {path}: {error}") from error
+        return self._scaled[key]
 
     def assets(self, mesh: Mesh, user: str = "") -> tuple[MeshAsset, ...]:
         """Return the visual parts of a mesh, and add new ones to the specification.
@@ -159,15 +163,20 @@ class MeshLibrary:
         return self._parts[path]
 
     def _read_through_cache(self, path: Path) -> tuple[MeshPart, ...]:
-        check_mesh_file(path)
         if self._cache is None or path.suffix.lower() in MULTI_FILE_SUFFIXES:
-            return _drawable_parts(read_mesh_file(path), MeshPart.of)
+            return _new_parts(path)
         key = self._cache.key(path.suffix.lower(), _contents(path))
         parts = self._cache.load(key)
         if parts is None:
-            parts = _drawable_parts(read_mesh_file(path), MeshPart.of)
+            parts = _new_parts(path)
             self._cache.store(key, parts)
         return parts
+
+
+def _new_parts(path: Path) -> tuple[MeshPart, ...]:
+    """Check and read a file; what the cache has of one was checked before."""
+    check_mesh_file(path)
+    return _drawable_parts(read_mesh_file(path), MeshPart.of)
 
 
 def _contents(path: Path) -> Iterator[bytes]:

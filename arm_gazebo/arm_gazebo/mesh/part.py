@@ -1,6 +1,6 @@
 """One part of a mesh file prepared for MuJoCo: its visual triangles and its collision hull."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +9,7 @@ from arm_description.errors import MeshFileError
 from arm_description.mesh.data import MeshData, Scale
 from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh.simplification import outermost, simplified
+from arm_node.frozen import frozen
 
 MAX_EXTENT_M = 1e3
 MIN_SIZE_M = 1e-6
@@ -21,7 +22,7 @@ MIN_HALF_THICKNESS_M = 1e-4
 """Half the thickness that a flat mesh gets so that it can collide."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MeshPart:
     """A part of one colour.
 

@@ -10,12 +10,12 @@ set-point, by up to the friction over the stiffness. MuJoCo's default yields mor
 a light joint feels little of it at low speeds, and a servo that makes up for it overshoots.
 """
 
-from dataclasses import dataclass
-
 import mujoco
 
+from arm_node.frozen import frozen
 
-@dataclass(frozen=True, slots=True)
+
+@frozen
 class FrictionSolver:
     """Parameters of MuJoCo's solver for the friction of a degree of freedom.
 

@@ -1,9 +1,9 @@
 """Limits on the memory of compiled models, which parameters of the simulation raise."""
 
-from dataclasses import dataclass
+from arm_node.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MemoryLimit:
     """A limit on the memory of a compiled model.
 

@@ -5,11 +5,11 @@ MuJoCo opens them by itself: a FIFO blocks it for ever.
 
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.errors import ModelError
+from arm_node.frozen import frozen
 from arm_node.user_file import UnusableFileError, check_file, read_text
 
 SIDES = ("right", "left", "up", "down", "front", "back")
@@ -22,7 +22,7 @@ INCLUDE_ELEMENTS = ("include", "model")
 """Elements whose file is another MJCF, which may name further files."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MjcfReference:
     """A file or folder that an MJCF names.
 

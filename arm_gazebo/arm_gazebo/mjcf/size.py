@@ -8,7 +8,6 @@ up.
 import re
 import struct
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import lxml.etree as etree
@@ -17,6 +16,7 @@ from arm_description.urdf.xml_document import parse_xml
 from arm_gazebo.errors import ModelError
 from arm_gazebo.mjcf.memory_limit import MemoryLimit
 from arm_gazebo.mjcf.references import FILES
+from arm_node.frozen import frozen
 from arm_node.user_file import open_file, read_text
 
 MAX_COPIES = 5_000
@@ -38,7 +38,7 @@ PNG = b"\x89PNG\r\n\x1a\n"
 PNG_HEADER = struct.Struct(">8s8xII")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Demand:
     label: str
     size: int

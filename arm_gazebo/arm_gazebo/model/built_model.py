@@ -1,7 +1,6 @@
 """A robot in its world, ready to be simulated, and its form as data for a file."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -10,10 +9,11 @@ from numpy.typing import NDArray
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
 from arm_gazebo.robot.actuation import RobotJoint
+from arm_node.frozen import frozen
 from arm_node.workarounds.patch_releases import for_version, saved_version, version_text
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BuiltModel:
     """The result of `build_world`.
 
@@ -41,7 +41,7 @@ class BuiltModel:
         return frozenset(root for roots in self.robots.values() for root in roots)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SavedModel:
     """A model that can be written to a file; all attributes except `content` are `BuiltModel`'s.
 

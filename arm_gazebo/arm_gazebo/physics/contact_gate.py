@@ -1,12 +1,12 @@
 """Skip collision detection while nothing can touch; it is half the cost of a free arm."""
 
 import math
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_node.frozen import frozen
 from arm_node.index_slice import as_slice
 
 CHECK_EVERY_S = 0.01
@@ -18,7 +18,7 @@ CONTACT = mujoco.mjtDisableBit.mjDSBL_CONTACT
 PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Clearance:
     """How far above the floor the shapes must be so that none reaches it before the next check.
 
@@ -110,7 +110,11 @@ def _touchable(model: mujoco.MjModel) -> np.ndarray:
 def _moving_geoms(model: mujoco.MjModel) -> np.ndarray:
     """Return the geoms that can move and touch something."""
     geoms = _touchable(model)
-    return geoms[model.body_weldid[model.geom_bodyid[geoms]] > 0]
+    return geoms[_can_move(model, geoms)]
+
+
+def _can_move(model: mujoco.MjModel, geoms: np.ndarray) -> np.ndarray:
+    return model.body_weldid[model.geom_bodyid[geoms]] > 0
 
 
 def _floor_geoms(model: mujoco.MjModel) -> np.ndarray:
@@ -118,7 +122,8 @@ def _floor_geoms(model: mujoco.MjModel) -> np.ndarray:
     moving = _moving_geoms(model)
     types = int(np.bitwise_or.reduce(model.geom_contype[moving], initial=0))
     affinities = int(np.bitwise_or.reduce(model.geom_conaffinity[moving], initial=0))
-    geoms = np.setdiff1d(_touchable(model), moving)
+    geoms = _touchable(model)
+    geoms = geoms[~_can_move(model, geoms)]
     touch = (model.geom_contype[geoms] & affinities) | (model.geom_conaffinity[geoms] & types)
     return geoms[touch != 0]
 

@@ -3,7 +3,6 @@
 import logging
 from collections.abc import Collection, Iterator, Mapping
 from copy import deepcopy
-from dataclasses import dataclass
 from typing import Any
 
 import mujoco
@@ -31,6 +30,7 @@ from arm_gazebo.physics.stepped_shapes import SteppedShapes
 from arm_gazebo.physics.world_properties import UNCHANGED, OwnProperties, PropertyChanges
 from arm_gazebo.physics_timing import DIVIDES_WITHIN, PhysicsTiming
 from arm_gazebo.robot.actuation import RobotJoint
+from arm_node.frozen import frozen
 from arm_node.workarounds.profiler import switch_off_profiler
 
 logger = logging.getLogger(__name__)
@@ -398,7 +398,7 @@ def _has_reset_itself(data: mujoco.MjData) -> bool:
     return any(data.warning[kind].number for kind in RESETTING)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NextModel:
     """A model that the simulation can switch to without delay; see `Physics.prepare`.
 

@@ -1,14 +1,15 @@
 """Copy and evaluate the simulation's state without changing the simulation."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_node.frozen import frozen
 
-@dataclass(frozen=True, slots=True)
+
+@frozen
 class WorldState:
     """One state of one model.
 

@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 
 import mujoco
 
@@ -11,6 +11,7 @@ from arm_control.loop.pacer import Pacer
 from arm_gazebo.feed.schedule import StreamCount
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.tick import TickCosts
+from arm_node.frozen import frozen
 
 PHASES = tuple(field.name for field in fields(TickCosts) if field.name != "ticks")
 LEAST_WINDOW_S = 0.5
@@ -18,7 +19,7 @@ LEAST_WINDOW_S = 0.5
 SAMPLES = 3
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class StatusReport:
     """The figures of one part of the simulation.
 
@@ -33,7 +34,7 @@ class StatusReport:
     values: Mapping[str, str]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RunSample:
     """What had been counted at one moment.
 

@@ -5,18 +5,19 @@ the same bits, whatever was set before.
 """
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.robot.link_geometry import friction_priority
+from arm_node.frozen import frozen
 
 Gravity = tuple[float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PropertyChanges:
     """What differs from the world's own properties, by default nothing. SI units.
 

@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.sensors.camera import CameraSensor
+from arm_node.frozen import frozen
 
 MARGIN = 2
 """Pixels around the rays that are needed: between two, and a next one to tell an edge."""
@@ -17,7 +17,7 @@ ACROSS = np.array([[1.0, -2.0, 1.0]], np.float32)
 """The second difference along a row."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PinholeView:
     """A perspective projection, in pixels.
 

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import mujoco
 
@@ -10,10 +9,11 @@ from arm_control.hardware.info import HardwareInfo, JointInfo
 from arm_description.urdf.robot import Joint, Mimic, Robot
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
+from arm_node.frozen import frozen
 from arm_node.names import listing
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RobotJoint:
     """A joint with one degree of freedom; positions in rad or m.
 
@@ -63,7 +63,7 @@ UNLIMITED = 1e9
 """A speed or effort limit of this or more, in SI units, counts as no limit: no joint reaches it."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Drive:
     """A commanded joint and its limits, per rad or m.
 

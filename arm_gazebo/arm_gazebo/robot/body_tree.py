@@ -1,7 +1,6 @@
 """Add the links and joints of a robot to a MuJoCo specification as bodies and joints."""
 
 import math
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -21,6 +20,7 @@ from arm_gazebo.robot.inertia_repair import (
     repair_inertia,
 )
 from arm_gazebo.robot.link_geometry import LinkGeometry
+from arm_node.frozen import frozen
 
 WORLD_LINK = "world"
 MAX_TREE_DEPTH = 1000
@@ -37,7 +37,7 @@ SLIDE = mujoco.mjtJoint.mjJNT_SLIDE
 BALL = mujoco.mjtJoint.mjJNT_BALL
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TreeOptions:
     """How a robot's tree is placed in the world.
 

@@ -1,7 +1,6 @@
 """Which shapes collide: Gazebo's defaults in MuJoCo's terms; and what overlaps from the start."""
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 
 import mujoco
@@ -10,12 +9,13 @@ from numpy.typing import NDArray
 
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.robot.floor_contact import lowest_points
+from arm_node.frozen import frozen
 
 WORLD_CONTYPE = 1
 """MuJoCo's default for a geom, so that every world file works unchanged."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CollisionMasks:
     """MuJoCo's two bit masks: two shapes collide if the type of one is in the other's affinity."""
 
@@ -27,7 +27,7 @@ MAX_LAYERS = 30
 """A mask has 32 bits. The world uses one, and the sign bit is not usable."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CollisionLayer:
     """The robot that a shape belongs to, by index; it collides with the world and other robots."""
 

@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from arm_description.mesh.data import Color
 from arm_description.urdf.description import Description, RobotDescription, as_description
 from arm_description.urdf.element import UrdfElement
 from arm_description.urdf.xml_document import finite_number
 from arm_gazebo.build_report import BuildReport, Finding
+from arm_node.frozen import frozen
 from arm_node.names import listing
 
 _PREFIX = "Gazebo/"
@@ -86,7 +87,7 @@ REASONS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LinkTags:
     """The tags of one link.
 
@@ -112,7 +113,7 @@ class LinkTags:
 NO_LINK_TAGS = LinkTags()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class GazeboTags:
     """The tags of a robot.
 

@@ -1,7 +1,6 @@
 """Repair the inertias of a URDF so that a rigid body can have them."""
 
 import math
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 
 from arm_description.transforms import rotation_from_rpy
 from arm_description.urdf.robot import Inertial
+from arm_node.frozen import frozen
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ RELATIVE_ZERO = 1e-12
 """A moment below this fraction of the largest one is 0 apart from rounding."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PrincipalInertia:
     """A body's mass and its inertia about its principal axes.
 

@@ -2,14 +2,13 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.mesh.data import Color
-from arm_description.transforms import wxyz_from_rpy
+from arm_description.transforms import rotation_from_rpy, wxyz_from_rpy
 from arm_description.urdf.robot import (
     Box,
     Capsule,
@@ -27,6 +26,7 @@ from arm_gazebo.mesh.library import MeshLibrary
 from arm_gazebo.mesh.part import MIN_HALF_THICKNESS_M, MeshPart
 from arm_gazebo.robot.collision_policy import CollisionMasks, with_self
 from arm_gazebo.robot.gazebo_tags import GazeboTags
+from arm_node.frozen import frozen
 
 VISUAL_GROUP = 2
 COLLISION_GROUP = 3
@@ -42,7 +42,7 @@ PLACEHOLDER_SIDE_M = 0.05
 MIN_SIZE_M = 1e-6
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Shape:
     """A geom without its pose: MuJoCo's type and half sizes, or the name of a mesh."""
 
@@ -188,11 +188,11 @@ class LinkGeometry:
         return shape
 
     def _add_geom(self, body: mujoco.MjsBody, origin: Pose, shape: _Shape) -> mujoco.MjsGeom:
+        position = origin.xyz
+        if any(shape.offset):
+            position = np.add(position, rotation_from_rpy(origin.rpy) @ shape.offset)
         geom = body.add_geom(
-            self._default,
-            type=shape.type,
-            pos=np.asarray(origin.xyz) + origin.matrix()[:3, :3] @ np.asarray(shape.offset),
-            quat=wxyz_from_rpy(origin.rpy),
+            self._default, type=shape.type, pos=position, quat=wxyz_from_rpy(origin.rpy)
         )
         if shape.mesh:
             geom.meshname = shape.mesh

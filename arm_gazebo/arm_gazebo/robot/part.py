@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Literal
 
@@ -36,11 +36,12 @@ from arm_gazebo.robot.wheels import set_up_wheels
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.contact import ContactSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
+from arm_node.frozen import frozen
 
 Base = Literal["fixed", "free"]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BuildOptions:
     """Choices for `build_model`.
 
@@ -73,7 +74,7 @@ DEFAULT_OPTIONS = BuildOptions()
 NO_TAGS = GazeboTags()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RobotInWorld:
     """A robot to add to a world.
 

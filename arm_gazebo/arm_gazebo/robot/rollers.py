@@ -13,7 +13,6 @@ curvature there. At the transition to the next roller its rim is less than 0.1 %
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -26,6 +25,7 @@ from arm_gazebo.build_report import BuildReport
 from arm_gazebo.mjcf.names import free_name
 from arm_gazebo.robot.gazebo_tags import GazeboTags, LinkTags
 from arm_gazebo.robot.link_geometry import COLLISION_GROUP, set_friction
+from arm_node.frozen import frozen
 
 Array = NDArray[np.float64]
 
@@ -156,7 +156,7 @@ def _add(
     return ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _RollerShape:
     """The common properties of a wheel's rollers.
 

@@ -15,7 +15,6 @@ Two properties of MuJoCo's contacts make wheels slip that would not slip in real
 
 import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import mujoco
@@ -25,6 +24,7 @@ from numpy.typing import NDArray
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.mjcf.names import free_name
 from arm_gazebo.robot.floor_contact import lowest_points
+from arm_node.frozen import frozen
 
 Array = NDArray[np.float64]
 GEOM = mujoco.mjtGeom
@@ -46,7 +46,7 @@ MAX_FLOORS = 100
 """Limit on the static shapes that each caster is paired with, planes first."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Shapes:
     """Indices of a robot's geoms near the floor."""
 

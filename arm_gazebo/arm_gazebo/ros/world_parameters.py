@@ -6,7 +6,6 @@ names, types, present values and a reason for each refusal.
 
 from array import array
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
@@ -24,6 +23,7 @@ from arm_gazebo.world.entity_properties import (
     PropertyEditor,
     with_gravity,
 )
+from arm_node.frozen import frozen
 from arm_node.parameters import declare_typed, take_other_notations, type_of
 
 GRAVITY = "gravity"
@@ -45,7 +45,7 @@ WANTED = {
 """Description and constraints of each kind of parameter."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Property:
     """What a parameter stands for.
 

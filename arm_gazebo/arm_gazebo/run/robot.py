@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from arm_control.errors import ArmControlError, LoopStoppedError
 from arm_control.hardware.info import parse_hardware_info
@@ -21,9 +21,10 @@ from arm_gazebo.run.settings import RobotSettings
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.camera_reader import parse_cameras
 from arm_gazebo.sensors.reader import parse_link_sensors
+from arm_node.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ManagedRobot:
     """A robot and its controller manager, as their user wants them.
 

@@ -1,7 +1,5 @@
 """`<inertial auto="true">`: compute mass and inertia of a link from its collisions."""
 
-from dataclasses import dataclass
-
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +18,13 @@ from arm_description.urdf.robot import (
 from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh.library import MeshLibrary
 from arm_gazebo.sdf.frames import pose_of
+from arm_node.frozen import frozen
 
 DEFAULT_DENSITY = 1000.0
 """SDF's default in kg/m3, the density of water."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class AutoInertia:
     """The input for the inertia of one link.
 

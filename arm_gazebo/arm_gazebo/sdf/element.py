@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
 
@@ -16,6 +15,7 @@ from arm_description.transforms import rotation_from_quaternion, rotation_from_r
 from arm_description.urdf.xml_document import XmlElement
 from arm_gazebo.build_report import BuildOutcome, Finding
 from arm_gazebo.errors import WorldError
+from arm_node.frozen import frozen
 from arm_node.user_file import read_text
 
 IGNORED_ATTRIBUTES = frozenset({"name", "attached_to", "canonical_link", "version"})
@@ -41,7 +41,7 @@ NOT_SIMULATED = "it is not simulated"
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SdfPose:
     """A pose as written: (4, 4) in the frame `relative_to`, "" for the default frame."""
 
@@ -49,7 +49,7 @@ class SdfPose:
     relative_to: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SdfFile:
     """A file that elements are read from.
 
@@ -255,7 +255,7 @@ class SdfElement(XmlElement[SdfFile]):
                 yield from child.unread()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unread:
     """An element that has not been read, or an unread attribute of an element that has.
 

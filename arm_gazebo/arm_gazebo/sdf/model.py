@@ -1,7 +1,6 @@
 """Read an SDF <model> as rigid bodies, each a robot whose links are fixed to one frame."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +34,7 @@ from arm_gazebo.sdf.element import SdfElement
 from arm_gazebo.sdf.frames import SdfFrames, pose_of
 from arm_gazebo.sdf.rigid_bodies import RigidBody, rigid_bodies
 from arm_gazebo.sdf.scope import Matrix, SdfScope
+from arm_node.frozen import frozen
 
 SHAPES = ("box", "cylinder", "sphere", "capsule", "mesh", "plane")
 
@@ -42,7 +42,7 @@ DEFAULT_INERTIAL = Inertial(1.0, Pose(), (1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
 """SDF's default for any shape: 1 kg, and 1 kg m2 about every axis."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SdfPlane:
     """An infinite collision plane, or a finite visual plane.
 
@@ -59,7 +59,7 @@ class SdfPlane:
     friction: float = DEFAULT_FRICTION
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SdfModel:
     """One rigid body of a model, usually the whole model: moving joints are not simulated.
 

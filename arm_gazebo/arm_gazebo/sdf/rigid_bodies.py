@@ -6,18 +6,18 @@ table.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from arm_gazebo.sdf.element import SdfElement
 from arm_gazebo.sdf.frames import SEPARATOR
 from arm_gazebo.sdf.scope import Matrix, SdfScope
+from arm_node.frozen import frozen
 
 WORLD = "world"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _ModelPart:
     """A model, or a model nested in it.
 
@@ -34,7 +34,7 @@ class _ModelPart:
     static: bool
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RigidBody:
     """Parts that move together or are static; `frame` is the (4, 4) pose in the outermost model."""
 

@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ from arm_description.errors import ResourceNotFoundError
 from arm_description.resources import resolve_uri
 from arm_gazebo.sdf.element import MODEL_FILE, SdfElement
 from arm_gazebo.sdf.frames import SdfFrames
+from arm_node.frozen import frozen
 from arm_node.names import listing
 
 PLACEMENT = "placement_frame"
@@ -21,7 +21,7 @@ MAX_MODELS = 5000
 Matrix = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NestedModel:
     """A model in a scope.
 

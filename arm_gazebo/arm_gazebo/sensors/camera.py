@@ -7,10 +7,11 @@ last scaled to pixels by the camera matrix. The picture's upper left corner is t
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from arm_node.frozen import frozen
 
 Array = NDArray[np.float64]
 
@@ -30,7 +31,7 @@ NEGLIGIBLE = 1e-12
 """Smallest coefficient that counts in the search for the radius where a model folds back."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Lens:
     """A pinhole with a distortion.
 
@@ -213,7 +214,7 @@ COLOUR_BYTES, DEPTH_BYTES, POINT_BYTES = 3, 4, 16
 """Size of a pixel in an image, a depth image and a point cloud."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CameraSensor:
     """The optics, the rate and the topics of one camera.
 

@@ -4,7 +4,7 @@ import logging
 import math
 from collections import deque
 from collections.abc import Callable, Container, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,7 @@ from arm_gazebo.sensors.tags import (
     SensorTags,
     unique_names,
 )
+from arm_node.frozen import frozen
 
 logger = logging.getLogger(__name__)
 
@@ -90,7 +91,7 @@ def _camera_tags(document: RobotDescription) -> Iterator[SensorTags]:
             )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Topics:
     """The topics of a camera, which depend on its type.
 

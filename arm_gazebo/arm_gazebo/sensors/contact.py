@@ -1,7 +1,6 @@
 """A contact sensor: whether anything touches a link, and how hard."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import ClassVar
 
 import mujoco
@@ -12,6 +11,7 @@ from arm_control.controllers.sensor_broadcasters.readings import FORCE_TORQUE_IN
 from arm_description.urdf.robot import Robot
 from arm_gazebo.sensors.link_sensor import WRENCH_FIELDS, LinkSensor, Measurement, SensorTopic
 from arm_gazebo.sensors.tags import SensorTags
+from arm_node.frozen import frozen
 
 DATA = mujoco.mjtConDataField
 WANTED = (DATA.mjCONDATA_FORCE, DATA.mjCONDATA_TORQUE, DATA.mjCONDATA_POS)
@@ -19,7 +19,7 @@ NET_FORCE = 3
 """MuJoCo's reduction of all contacts to one: the summed force at the contacts' centre."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ContactSensor(LinkSensor):
     """A contact sensor that covers all collision shapes of a link.
 

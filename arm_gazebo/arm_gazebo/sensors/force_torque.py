@@ -1,7 +1,6 @@
 """A force-torque sensor: the wrench that a joint transmits between its two links."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import ClassVar
 
 import mujoco
@@ -13,13 +12,14 @@ from arm_description.urdf.robot import Robot
 from arm_gazebo.sensors.link_sensor import WRENCH_FIELDS, LinkSensor, Measurement, SensorTopic
 from arm_gazebo.sensors.noise import SILENT, NoiseModel, read_noise
 from arm_gazebo.sensors.tags import SensorTags
+from arm_node.frozen import frozen
 
 FRAMES = ("child", "parent", "sensor")
 DIRECTIONS = ("child_to_parent", "parent_to_child")
 QUIET = (SILENT,) * 6
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ForceTorqueSensor(LinkSensor):
     """A sensor in a joint, which may be fixed; `link` is the joint's child link.
 

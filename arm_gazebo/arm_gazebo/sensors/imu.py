@@ -1,7 +1,6 @@
 """An inertial measurement unit: orientation, angular velocity, specific force."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import ClassVar
 
 import mujoco
@@ -13,6 +12,7 @@ from arm_description.urdf.robot import Robot
 from arm_gazebo.sensors.link_sensor import LinkSensor, Measurement, SensorTopic
 from arm_gazebo.sensors.noise import SILENT, NoiseModel, read_noise
 from arm_gazebo.sensors.tags import SensorTags
+from arm_node.frozen import frozen
 
 XYZW = [1, 2, 3, 0, *range(4, 10)]
 """MuJoCo puts a quaternion's scalar first, ROS puts it last."""
@@ -22,7 +22,7 @@ UNKNOWN = -1.0
 """First number of the covariance of a quantity that the message does not contain."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ImuSensor(LinkSensor):
     """An IMU.
 

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import ClassVar
 
 import mujoco
@@ -13,6 +13,7 @@ from arm_description.transforms import wxyz_from_rpy
 from arm_description.urdf.robot import Robot
 from arm_gazebo.sensors.noise import NoiseModel
 from arm_gazebo.sensors.tags import SensorTags
+from arm_node.frozen import frozen
 
 Vector = tuple[float, float, float]
 
@@ -20,7 +21,7 @@ WRENCH_FIELDS = ("wrench.force", "wrench.torque")
 """Fields of geometry_msgs/msg/WrenchStamped that hold the values of a wrench."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Measurement:
     """One of MuJoCo's own sensors.
 
@@ -41,7 +42,7 @@ class Measurement:
     options: tuple[int, int, int] = (0, 0, 0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SensorTopic:
     """One topic that a sensor's readings are published on.
 
@@ -61,7 +62,7 @@ class SensorTopic:
     constants: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LinkSensor(ABC):
     """A sensor on a link, as the URDF describes it.
 

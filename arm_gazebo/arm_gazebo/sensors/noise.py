@@ -1,12 +1,12 @@
 """Gaussian noise on sensor readings."""
 
 import zlib
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.sensors.tags import SensorTags
+from arm_node.frozen import frozen
 
 BANK_SIZE = 1 << 16
 STRIDE = 40503
@@ -19,7 +19,7 @@ NUMBERS = (
 """What SDF writes in a noise."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NoiseModel:
     """The noise of one value as described, in the value's unit.
 

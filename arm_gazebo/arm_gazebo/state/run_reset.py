@@ -1,15 +1,15 @@
 """Reset a run, wholly or in part, in one tick."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from arm_control.errors import StateError
 from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.state.complete_state import CompleteState
 from arm_gazebo.world.editor import WorldEditor
+from arm_node.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ResetScope:
     """What a reset covers.
 

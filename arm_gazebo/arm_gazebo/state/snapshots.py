@@ -1,7 +1,6 @@
 """Snapshots of a running simulation, by name or in files: what they are, to save and restore."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from hashlib import blake2b
 from pathlib import Path
 from typing import Any
@@ -20,6 +19,7 @@ from arm_gazebo.world.changes import Spawned, WorldChanges
 from arm_gazebo.world.editor import WorldEditor
 from arm_gazebo.world.entity import NAME
 from arm_gazebo.world.spawn_model import ModelSource
+from arm_node.frozen import frozen
 from arm_node.names import describe_known
 
 SUFFIX = ".snapshot"
@@ -30,7 +30,7 @@ LEVEL = 3
 MAX_BYTES = 1 << 31
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RunSnapshot:
     """One moment of a run.
 

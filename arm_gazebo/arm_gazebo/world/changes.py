@@ -1,7 +1,7 @@
 """The changes to a world since it was built, and the model with these changes applied."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import mujoco
 import numpy as np
@@ -12,12 +12,13 @@ from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.physics.state_transfer import StateTransfer
 from arm_gazebo.robot.actuation import RobotJoint
 from arm_gazebo.world.spawn_model import SpawnModel
+from arm_node.frozen import frozen
 
 Matrix = NDArray[np.float64]
 ASLEEP_AT_FIRST = mujoco.mjtSleepPolicy.mjSLEEP_INIT
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Spawned:
     """A spawned model.
 
@@ -42,7 +43,7 @@ class Spawned:
         return f"{self.name}::"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class WorldChanges:
     """Changes to a world, by default none; the original world is not modified.
 

@@ -1,19 +1,18 @@
 """The contacts between bodies in one state of the world."""
 
-from dataclasses import dataclass
-
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.world.entity import WORLD_FRAME, Entities
+from arm_node.frozen import frozen
 from arm_node.names import listing
 
 Vector = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Contact:
     """A point at which two bodies touch, so that forces act there.
 

@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Protocol, TypeVar
 
 import mujoco
@@ -32,6 +32,7 @@ from arm_gazebo.world.entity import (
 )
 from arm_gazebo.world.entity_motion import EntityMotions
 from arm_gazebo.world.spawn_model import ModelSource
+from arm_node.frozen import frozen
 
 logger = logging.getLogger(__name__)
 
@@ -62,7 +63,7 @@ class ModelFeed(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SpawnRequest:
     """A request to spawn a model.
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
 import mujoco
@@ -13,6 +13,7 @@ from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.mjcf.names import free_name
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.world.changes import WorldChanges
+from arm_node.frozen import frozen
 from arm_node.names import listing
 
 NAME = re.compile(r"[A-Za-z0-9_.\-]{1,100}", re.ASCII)
@@ -30,7 +31,7 @@ class Category(Enum):
     STATIC_OBJECT = 5
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class EntityNote:
     """Information about an entity apart from its motion.
 
@@ -45,7 +46,7 @@ class EntityNote:
     tags: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class WorldEntity:
     """An object in the world, or a robot.
 

@@ -1,7 +1,5 @@
 """Poses and velocities of entities in a copy of the simulation's state, and filters by them."""
 
-from dataclasses import dataclass
-
 import mujoco
 import numpy as np
 import re2
@@ -11,13 +9,14 @@ from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.physics.state_probe import WorldState, evaluate_all
 from arm_gazebo.world.changes import Matrix
 from arm_gazebo.world.entity import Category, Entities, WorldEntity
+from arm_node.frozen import frozen
 
 Vector = NDArray[np.float64]
 Box = NDArray[np.float64]
 PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class EntityMotion:
     """Pose and velocity of a frame in the world, at one time.
 
@@ -147,7 +146,7 @@ def _reason(error: Exception) -> str:
     return reason.decode("utf-8", "replace") if isinstance(reason, bytes) else str(error)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Volume:
     """A box, or a ball if it has a radius.
 
@@ -167,7 +166,7 @@ class Volume:
         return bool(np.linalg.norm(gap) <= self.radius)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class EntityFilter:
     """Passes entities that match every condition that is set.
 

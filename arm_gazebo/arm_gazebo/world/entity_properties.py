@@ -3,7 +3,6 @@
 import logging
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -14,6 +13,7 @@ from arm_gazebo.errors import Refusal, RequestError
 from arm_gazebo.physics.physics import Physics
 from arm_gazebo.physics.world_properties import Gravity, PropertyChanges, bodies_of, shapes_of
 from arm_gazebo.world.editor import WorldEditor
+from arm_node.frozen import frozen
 
 MAX_GRAVITY_M_S2 = 100.0
 """In each direction. With more, a falling thing could pass the floor between two checks of
@@ -24,7 +24,7 @@ MAX_FRICTION = 100.0
 logger = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class EntityProperties:
     """Physical properties of an entity.
 
@@ -149,7 +149,7 @@ class PropertyEditor:
         return _PresentProperties(model, masses, frictions, changes)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _PresentProperties:
     """Copies of what changes in a model.
 

@@ -4,7 +4,6 @@ import logging
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,7 +21,7 @@ from arm_gazebo.model.builder import build_world
 from arm_gazebo.model.built_model import BuiltModel
 from arm_gazebo.model.world_file import SDF_SUFFIXES, load_world
 from arm_gazebo.robot.part import RobotInWorld
-from arm_gazebo.world.trial import WORLD_PROCESSOR_S, check_mjcf_files
+from arm_node.frozen import frozen
 from arm_node.user_file import read_text
 
 if TYPE_CHECKING:
@@ -36,7 +35,7 @@ NO_WORLD = "<mujoco model='no_world'/>"
 logger = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NamedWorld:
     """A world that can be loaded.
 
@@ -131,6 +130,8 @@ class WorldLoader:
                 f"resource_string: <{tag}> is neither <sdf> nor <mujoco>",
             )
         if tag == "mujoco":
+            from arm_gazebo.world.trial import check_mjcf_files
+
             check_mjcf_files(text)
         with _temporary_file(text, tag) as path:
             return self._tried_and_built(path, all_elements)
@@ -142,6 +143,9 @@ class WorldLoader:
         return self._build(path, all_elements)
 
     def _try(self, path: Path) -> None:
+        # Imported here, because most runs load no world from outside.
+        from arm_gazebo.world.trial import WORLD_PROCESSOR_S
+
         limit = self._entries[0].options.memory_limit
         try:
             text = read_text(path)

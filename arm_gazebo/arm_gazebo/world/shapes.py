@@ -1,7 +1,7 @@
 """The shapes of a world, without robots, as simple solids that any viewer can draw."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
 import mujoco
@@ -12,6 +12,7 @@ from arm_description.mesh.data import MeshData
 from arm_gazebo.mesh.simplification import simplified
 from arm_gazebo.rendering.surface_colours import flat_colours
 from arm_gazebo.world.entity import WORLD_FRAME, Entities
+from arm_node.frozen import frozen
 
 DRAWN_GROUPS = (0, 1, 2)
 """The groups that MuJoCo's viewers and the cameras show."""
@@ -32,7 +33,7 @@ class Solid(Enum):
     TRIANGLES = "triangles"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class WorldShape:
     """A solid of the world.
 

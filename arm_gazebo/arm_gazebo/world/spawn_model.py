@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
 import mujoco
@@ -34,6 +34,7 @@ from arm_gazebo.sdf.element import SdfElement, unread_findings
 from arm_gazebo.sdf.model import read_model
 from arm_gazebo.sdf.scope import SdfScope, sdf_file_in
 from arm_gazebo.world.trial import MjcfTrial, can_be_simulated, check_mjcf_files
+from arm_node.frozen import frozen
 from arm_node.names import listing
 from arm_node.user_file import UnusableFileError, read_text
 
@@ -43,7 +44,7 @@ FILE_MISSING = "opening file"
 """Part of MuJoCo's message about an unreadable file that an MJCF names."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SpawnModel:
     """A model that can be attached to a world.
 
@@ -67,7 +68,7 @@ class SpawnModel:
     text: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ModelSource:
     """Reads models to spawn.
 

@@ -10,11 +10,11 @@ of the four-byte header; strings and sequences are preceded by their length.
 """
 
 import struct
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_node.frozen import frozen
 from arm_node.workarounds.switch import is_on
 
 NANOSECONDS = 1_000_000_000
@@ -29,7 +29,7 @@ class EncodingError(ValueError):
     """The bytes are not a JointState in little-endian CDR."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class JointPositions:
     """The fields that the transforms depend on: positions (n,) in rad or m of the joints `names`.
 

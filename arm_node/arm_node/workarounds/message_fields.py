@@ -2,10 +2,11 @@
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from builtin_interfaces.msg import Duration, Time
+
+from arm_node.frozen import frozen
 
 Message = Any
 """An instance of a generated message class; these have no common base class."""
@@ -18,7 +19,7 @@ class MessageLayoutError(Exception):
     """The numbers of a message cannot be found in its bytes, or a path names no such number."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Field:
     """A field of a message: one number, or `count` numbers in a sequence."""
 

@@ -4,9 +4,10 @@ import os
 import re
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+
+from arm_node.frozen import frozen
 
 VARIABLE = "ARM_WITHOUT"
 ALL = "all"
@@ -14,7 +15,7 @@ _VERSION = re.compile(r"<version[^>]*>\s*([\d.]+)\s*</version>")
 _RMW = "rmw_fastrtps"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Library:
     """A library that has workarounds.
 

@@ -1,7 +1,6 @@
 """Controllers that forward the latest command: forward_command_controller and similar ones."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
@@ -16,6 +15,7 @@ from arm_control.controllers.controller import (
 from arm_control.errors import ControllerError
 from arm_control.parameters import parameter
 from arm_control.run_inputs import run_input
+from arm_node.frozen import frozen
 
 ParametersT = TypeVar("ParametersT")
 
@@ -40,7 +40,7 @@ def _command_timeout() -> float:
     )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ForwardCommandParameters:
     """Parameters of controllers that command one interface of several joints."""
 
@@ -51,28 +51,28 @@ class ForwardCommandParameters:
     command_timeout: float = _command_timeout()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PositionGroupParameters(ForwardCommandParameters):
     """Parameters of JointGroupPositionController."""
 
     interface_name: str = parameter("position", FIXED_INTERFACE, at_configuration=True)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class VelocityGroupParameters(ForwardCommandParameters):
     """Parameters of JointGroupVelocityController."""
 
     interface_name: str = parameter("velocity", FIXED_INTERFACE, at_configuration=True)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class EffortGroupParameters(ForwardCommandParameters):
     """Parameters of JointGroupEffortController."""
 
     interface_name: str = parameter("effort", FIXED_INTERFACE, at_configuration=True)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MultiInterfaceForwardCommandParameters:
     """Parameters of MultiInterfaceForwardCommandController."""
 
@@ -83,7 +83,7 @@ class MultiInterfaceForwardCommandParameters:
     command_timeout: float = _command_timeout()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PidParameters:
     """Gains as in parameter files of ROS 1."""
 
@@ -92,7 +92,7 @@ class PidParameters:
     d: float = parameter(0.0, IGNORED_GAIN)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class JointPositionParameters:
     """Parameters of JointPositionController."""
 

@@ -1,7 +1,6 @@
 """joint_state_broadcaster/JointStateBroadcaster: publishes the states of all joints."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
@@ -16,12 +15,13 @@ from arm_control.controllers.controller import (
 from arm_control.errors import ControllerError
 from arm_control.parameters import parameter
 from arm_description.errors import DescriptionError
+from arm_node.frozen import frozen
 
 QUANTITIES = ("position", "velocity", "effort")
 """The arrays of a sensor_msgs/JointState, in the order of the flat array published."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class JointStateLayout:
     """The joints and interfaces that are published during one activation.
 
@@ -50,7 +50,7 @@ class StateCopy:
         return self.values
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _JointStatePlan:
     """A layout, and the copies that fill its values."""
 
@@ -103,7 +103,7 @@ def plan_joint_states(
     )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class InterfaceMap:
     """The state interface of each quantity."""
 
@@ -112,7 +112,7 @@ class InterfaceMap:
     effort: str = parameter("effort", "State interface shown as effort", read_only=True)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class JointStateBroadcasterParameters:
     """Parameters of JointStateBroadcaster."""
 
