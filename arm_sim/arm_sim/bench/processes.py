@@ -28,7 +28,13 @@ class LoggedProcess:
         process: the process.
     """
 
-    def __init__(self, name: str, command: Sequence[str], environment: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        name: str,
+        command: Sequence[str],
+        environment: Mapping[str, str],
+        stdin: int = subprocess.DEVNULL,
+    ) -> None:
         """Start it; it does not get the terminal.
 
         Raises:
@@ -40,16 +46,16 @@ class LoggedProcess:
         self._changed = threading.Condition()
         self._is_closed = False
         try:
-            self.process = self._start(command)
+            self.process = self._start(command, stdin)
         except OSError as error:
             raise BenchError(f"{name} cannot start: {error}") from error
         self._reader = threading.Thread(target=self._read, name=f"log of {name}", daemon=True)
         self._reader.start()
 
-    def _start(self, command: Sequence[str]) -> "subprocess.Popen[str]":
+    def _start(self, command: Sequence[str], stdin: int) -> "subprocess.Popen[str]":
         return subprocess.Popen(
             list(command),
-            stdin=subprocess.DEVNULL,
+            stdin=stdin,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
