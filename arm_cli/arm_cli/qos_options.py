@@ -25,16 +25,9 @@ LARGEST_DEPTH = 2**31 - 1
 
 @dataclass(frozen=True, slots=True)
 class QosChoice:
-    """The requested QoS policies; None leaves a policy to the profile or to the other side's QoS.
+    """The requested QoS policies by their short names, and the liveliness lease duration.
 
-    Attributes:
-        profile: short name of a preset.
-        depth: length of the queue.
-        history: short name.
-        reliability: short name.
-        durability: short name.
-        liveliness: short name.
-        lease_s: liveliness lease duration.
+    None leaves a policy to the profile or to the other side's QoS.
     """
 
     profile: str | None = None

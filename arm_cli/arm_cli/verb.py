@@ -85,11 +85,7 @@ class PlainVerb:
 class VerbFamily:
     """Verbs that share a first word.
 
-    Attributes:
-        name: the word on the command line.
-        help: one line of help.
-        verbs: the verbs, and families of verbs.
-        missing: verbs of ros2 that do not exist here, each with a sentence that says why.
+    `missing` has verbs of ros2 that do not exist here, each with a sentence that says why.
     """
 
     def __init__(

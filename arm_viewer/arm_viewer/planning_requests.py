@@ -13,13 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SetGoal:
-    """Choose where a group is to go.
-
-    Attributes:
-        namespace: namespace of the move_group.
-        group: name of the group.
-        positions: positions in rad or m, by joint; joints without one stay where they are.
-    """
+    """Choose where a group is to go, in rad or m; joints without a position stay where they are."""
 
     namespace: str
     group: str
@@ -28,14 +22,10 @@ class SetGoal:
 
 @dataclass(frozen=True, slots=True)
 class DragTip:
-    """Choose where the tip of a group is to go.
+    """Choose where the tip of a group is to go, in the frame of the robot's root link.
 
-    Attributes:
-        namespace: namespace of the move_group.
-        group: name of the group.
-        pose: pose of the group's tip in the frame of the robot's root link.
-        avoids: whether the robot may take any posture that touches nothing. While one drags, the
-            nearest one is wanted, and what it touches is shown.
+    While one drags, the nearest posture is wanted, and what it touches is shown. If it `avoids`,
+    the robot may take any posture that touches nothing.
     """
 
     namespace: str
@@ -48,10 +38,8 @@ class DragTip:
 class JogTip:
     """Let the robot follow with its tip, as long as this is repeated.
 
-    Attributes:
-        namespace: namespace of the move_group.
-        pose: pose of the jogged group's tip in the frame of the robot's root link.
-        drag: number of the user's drag; a new one chooses the type of commands again.
+    The pose is in the frame of the robot's root link. A new number of the user's drag chooses the
+    type of commands again.
     """
 
     namespace: str
@@ -61,14 +49,7 @@ class JogTip:
 
 @dataclass(frozen=True, slots=True)
 class PlanMotion:
-    """Plan to the goal.
-
-    Attributes:
-        namespace: namespace of the move_group.
-        velocity: fraction of the velocity limits.
-        acceleration: fraction of the acceleration limits.
-        executes: whether the robot moves as soon as there is a plan.
-    """
+    """Plan to the goal, with fractions of the limits; if it `executes`, move at once."""
 
     namespace: str
     velocity: float
@@ -100,12 +81,7 @@ class AddObject:
 
 @dataclass(frozen=True, slots=True)
 class RemoveObject:
-    """Remove an object from the planning scene.
-
-    Attributes:
-        namespace: namespace of the move_group.
-        name: name of the object.
-    """
+    """Remove an object from the planning scene."""
 
     namespace: str
     name: str

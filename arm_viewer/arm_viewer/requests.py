@@ -11,12 +11,7 @@ from arm_viewer.world_requests import WorldRequest
 
 @dataclass(frozen=True, slots=True)
 class MoveJoints:
-    """Command joints of a robot through their active controllers.
-
-    Attributes:
-        namespace: namespace of the robot, as in `Description.namespace`.
-        positions: positions in rad or m, by joint.
-    """
+    """Command joints of a robot, in rad or m, through their active controllers."""
 
     namespace: str
     positions: dict[str, float]
@@ -24,13 +19,7 @@ class MoveJoints:
 
 @dataclass(frozen=True, slots=True)
 class SwitchControllers:
-    """Activate and deactivate controllers of one manager, all or none.
-
-    Attributes:
-        manager: absolute name of the manager's node.
-        activate: names of inactive controllers.
-        deactivate: names of active controllers.
-    """
+    """Activate and deactivate controllers of one manager, all or none."""
 
     manager: str
     activate: tuple[str, ...] = ()
@@ -39,12 +28,7 @@ class SwitchControllers:
 
 @dataclass(frozen=True, slots=True)
 class Configure:
-    """Configure a controller that is only loaded.
-
-    Attributes:
-        manager: absolute name of the manager's node.
-        controller: name of the controller.
-    """
+    """Configure a controller that is only loaded."""
 
     manager: str
     controller: str
@@ -113,11 +97,7 @@ class SetSpeed:
 
 @dataclass(frozen=True, slots=True)
 class ResetRun:
-    """Return everything in the simulation to its start.
-
-    Attributes:
-        keeps_clock: whether simulation time goes on instead of starting at zero.
-    """
+    """Return everything in the simulation to its start, the clock unless it is kept."""
 
     keeps_clock: bool
 

@@ -15,13 +15,7 @@ class LookAtThing:
 
 @dataclass(frozen=True, slots=True)
 class AddThing:
-    """Spawn a thing.
-
-    Attributes:
-        name: its name.
-        text: URDF or SDF.
-        pose: in the world.
-    """
+    """Spawn a thing, as URDF or SDF, at a pose in the world."""
 
     name: str
     text: str
@@ -75,13 +69,7 @@ class SetGravity:
 
 @dataclass(frozen=True, slots=True)
 class SetProperties:
-    """Set mass or friction of a thing; None leaves one as it is.
-
-    Attributes:
-        name: the thing.
-        mass_kg: its mass.
-        friction: its coefficient of sliding friction.
-    """
+    """Set mass or sliding friction of a thing; None leaves one as it is."""
 
     name: str
     mass_kg: float | None

@@ -96,11 +96,7 @@ _STATUS_NAMES = {
 
 
 class GoalSender:
-    """Sends goals to one action.
-
-    Attributes:
-        name: the action's name.
-    """
+    """Sends goals to one action."""
 
     def __init__(self, session: CommandSession, action_class: Any, name: str) -> None:
         """Create the action client on the session's node."""

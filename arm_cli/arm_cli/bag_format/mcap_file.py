@@ -195,12 +195,7 @@ class _Record:
 
 
 class _Scan:
-    """Reads the records of a file and collects what a complete summary has.
-
-    Attributes:
-        summary: what has been found.
-        plain: the messages outside chunks.
-    """
+    """Reads the records of a file and collects what a complete summary has."""
 
     def __init__(self) -> None:
         self.summary = Summary()

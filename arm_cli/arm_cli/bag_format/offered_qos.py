@@ -51,16 +51,8 @@ POLICIES = {
 class OfferedQos:
     """The QoS that one publisher offers, with policies by rclpy's short names.
 
-    Attributes:
-        history: "unknown" if recorded, because Fast DDS does not announce it.
-        depth: 0 if the history is unknown.
-        reliability: policy.
-        durability: policy.
-        deadline: longest time between messages.
-        lifespan: time after which a message is outdated.
-        liveliness: policy.
-        lease: liveliness lease duration.
-        avoid_ros_namespace_conventions: whether the topic's DDS name has no prefix `rt/`.
+    If recorded, the history is "unknown" and the depth 0, because Fast DDS does not announce them.
+    The topic's DDS name has the prefix `rt/` unless ROS's naming conventions are avoided.
     """
 
     history: str = "unknown"

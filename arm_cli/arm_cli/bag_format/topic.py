@@ -164,13 +164,9 @@ class RecordedTopic:
 
 
 class BagMessage(NamedTuple):
-    """A serialized message; a tuple, because one is created for every received message.
+    """A serialized message as on the wire, with its times of reception and publication.
 
-    Attributes:
-        topic: the topic's name.
-        log_time_ns: the time of its reception.
-        publish_time_ns: the time of its publication.
-        data: the bytes on the wire, with the encapsulation header.
+    It is a tuple, because one is created for every received message.
     """
 
     topic: str

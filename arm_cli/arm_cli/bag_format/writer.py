@@ -125,14 +125,7 @@ class McapFileWriter:
 
 @dataclass(frozen=True, slots=True)
 class BagSettings:
-    """Options for writing a bag.
-
-    Attributes:
-        compression: the compression of the chunks: none, lz4 or zstd.
-        max_size_bytes: the size at which a new file begins; None means never.
-        max_duration_ns: the duration at which a new file begins; None means never.
-        ros_distro: the ROS distribution being recorded.
-    """
+    """Options for writing a bag; without a limit of size or duration it has one file."""
 
     compression: str = "none"
     max_size_bytes: int | None = None

@@ -14,14 +14,7 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """The result of one check.
-
-    Attributes:
-        check: the check's name.
-        severity: the severity of the finding.
-        sentence: the finding in plain words.
-        fix: what to do about it; empty if there is nothing to do.
-    """
+    """The result of one check; the fix is empty if there is nothing to do."""
 
     check: str
     severity: Severity

@@ -70,10 +70,7 @@ INSTALL_OPENGL = "apt install libegl1 libgl1-mesa-dri (or libosmesa6)"
 class Trial:
     """The result of a command that was tried in a child process.
 
-    Attributes:
-        worked: whether it ended with exit code 0.
-        out: its output on stdout.
-        complaint: its last line on stderr, or how it ended.
+    The complaint is its last line on stderr, or how it ended.
     """
 
     worked: bool

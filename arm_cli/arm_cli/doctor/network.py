@@ -181,11 +181,7 @@ _NAMED = re.compile(r"sys\.argv\[0\] = '([^']+)'")
 class _Listener:
     """A process that has sockets of the domain open.
 
-    Attributes:
-        pid: its process id.
-        program: the program's name for the user.
-        addresses: the addresses on which it listens, for the domain and for web pages.
-        environ: the environment variables that it was started with.
+    The addresses are those for the domain and for web pages; `environ` is what it was started with.
     """
 
     pid: int

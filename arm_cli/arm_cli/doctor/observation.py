@@ -15,14 +15,7 @@ class LoadedController:
 
 @dataclass(frozen=True, slots=True)
 class ObservedHardware:
-    """A hardware component.
-
-    Attributes:
-        name: the component's name.
-        state: its lifecycle state.
-        claimed: whether each of its command interfaces is claimed, by name.
-        states: the names of its state interfaces.
-    """
+    """A hardware component, its claimed command interfaces, and its state interfaces."""
 
     name: str
     state: str
@@ -32,14 +25,7 @@ class ObservedHardware:
 
 @dataclass(frozen=True, slots=True)
 class ControlState:
-    """The state of a controller manager.
-
-    Attributes:
-        manager: the absolute name of its node.
-        answered: whether it answered; if not, nothing else is known.
-        controllers: the loaded controllers.
-        hardware: the hardware components.
-    """
+    """The state of a controller manager; unless it `answered`, nothing else is known."""
 
     manager: str
     answered: bool = True
@@ -79,14 +65,9 @@ class Mismatch:
 
 @dataclass(frozen=True, slots=True)
 class StateTopic:
-    """A topic for joint states.
+    """A topic for joint states, with the names of the nodes at its ends.
 
-    Attributes:
-        name: the topic's name.
-        publishers: the names of the publishing nodes.
-        listeners: the names of the subscribing nodes.
-        received: the number of messages received.
-        not_numbers: the NaN values of the last message, as interfaces such as 'j0/position'.
+    `not_numbers` are the NaN values of the last message, as interfaces such as 'j0/position'.
     """
 
     name: str
@@ -98,17 +79,11 @@ class StateTopic:
 
 @dataclass(frozen=True, slots=True)
 class SetpointTopic:
-    """A topic for set-points.
+    """A topic for set-points, with the names of the nodes at its ends.
 
-    Attributes:
-        name: the topic's name.
-        publishers: the names of the publishing nodes.
-        listeners: the names of the subscribing nodes.
-        controller: the controller that it belongs to, empty if none is loaded.
-        state: the state of that controller.
-        received: the number of messages received.
-        ahead_s: how far the last message's stamp was ahead of simulation time; None without stamp.
-        lasting_s: the duration of that message's motion from its stamp.
+    Its controller is empty if none is loaded. The last message was stamped `ahead_s` after the
+    simulation time at its arrival, None without a stamp, and its motion takes `lasting_s` from
+    there.
     """
 
     name: str

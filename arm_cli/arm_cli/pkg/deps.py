@@ -34,13 +34,9 @@ SUITE = ("arm-suite", "arm-interfaces", "arm-moveit-interfaces")
 
 @dataclass(frozen=True, slots=True)
 class _Dependency:
-    """A dependency of packages.
+    """A dependency of packages, by its name in package.xml files.
 
-    Attributes:
-        name: the name in package.xml files.
-        needed_by: the packages that depend on it.
-        pip: the distribution that contains it, "" if there is none.
-        installed: whether it is installed.
+    `pip` is the distribution that contains it, "" if there is none.
     """
 
     name: str

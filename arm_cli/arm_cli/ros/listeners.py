@@ -22,11 +22,7 @@ from launch_py.fast_dds.participants import domain_of
 
 
 class TopicListener:
-    """Listens to one topic.
-
-    Attributes:
-        topic: the topic's absolute name.
-    """
+    """Listens to one topic."""
 
     def __init__(self, session: CommandSession, topic: str) -> None:
         """Prepare to listen with a session's node.

@@ -10,12 +10,7 @@ ZERO: Three = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class TipMotion:
-    """A velocity of the tip in fractions of the largest, -1 to 1, on the axes of a frame.
-
-    Attributes:
-        linear: along x, y and z.
-        angular: about x, y and z.
-    """
+    """A velocity of the tip along and about the axes of a frame, -1 to 1 of the largest."""
 
     linear: Three = ZERO
     angular: Three = ZERO

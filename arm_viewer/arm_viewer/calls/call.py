@@ -40,12 +40,7 @@ class Callee:
 
 @dataclass(frozen=True, slots=True)
 class OpenForm:
-    """Find out what can be typed.
-
-    Attributes:
-        number: identifies the call to come.
-        callee: what is to be called.
-    """
+    """Find out what can be typed, before the call of that number."""
 
     number: int
     callee: Callee

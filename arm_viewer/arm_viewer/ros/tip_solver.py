@@ -24,14 +24,9 @@ Take = Callable[["TipPose", JointPositions | None, str], None]
 
 @dataclass(frozen=True, slots=True)
 class TipPose:
-    """Where a tip is to be.
+    """Where a group's tip is to be, in the frame of a link.
 
-    Attributes:
-        group: name of the group.
-        tip: the link.
-        frame: the link whose frame the pose is in.
-        pose: the pose.
-        avoids: whether to look for a posture that touches nothing, first.
+    If it `avoids`, a posture that touches nothing is sought first.
     """
 
     group: str
