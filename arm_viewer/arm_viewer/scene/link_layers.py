@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 from viser import SceneApi, SceneNodeHandle
+from viser.transforms import SO3
 
 from arm_description.errors import DescriptionError
 from arm_description.mesh.data import Color, MeshData
-from arm_description.transforms import quaternion_from_rpy
-from arm_description.urdf.robot import Collision, Inertial, Link, Pose, Visual
+from arm_description.transforms import quaternion_from_rpy, wxyz_from_rpy
+from arm_description.urdf.robot import Collision, Inertial, Link, Visual
 from arm_node.rigid_transform import Quaternion, Vector, quaternion_product
 from arm_viewer.scene.triangles import edges, problem_of, smooth, triangles
 
@@ -48,27 +49,8 @@ def inertia_ellipsoid(inertial: Inertial) -> tuple[Vector, Quaternion] | None:
     if np.linalg.det(axes) < 0.0:
         axes[:, 2] = -axes[:, 2]
     a, b, c = np.sqrt(np.maximum(squares, 0.0)).tolist()
-    return (a, b, c), _quaternion(axes)
-
-
-def _quaternion(rotation: np.ndarray) -> Quaternion:
-    """Return the quaternion of a rotation matrix by Shepperd's method."""
-    trace = float(np.trace(rotation))
-    diagonal = [float(rotation[i, i]) for i in range(3)]
-    i = int(np.argmax([*diagonal, trace]))
-    q = [0.0, 0.0, 0.0, 0.0]
-    if i == 3:
-        q[3] = 1.0 + trace
-        for k in range(3):
-            q[k] = float(rotation[(k + 2) % 3, (k + 1) % 3] - rotation[(k + 1) % 3, (k + 2) % 3])
-    else:
-        j, k = (i + 1) % 3, (i + 2) % 3
-        q[i] = 1.0 - trace + 2.0 * diagonal[i]
-        q[j] = float(rotation[j, i] + rotation[i, j])
-        q[k] = float(rotation[k, i] + rotation[i, k])
-        q[3] = float(rotation[k, j] - rotation[j, k])
-    x, y, z, w = (component / math.hypot(*q) for component in q)
-    return x, y, z, w
+    w, x, y, z = SO3.from_matrix(axes).wxyz.tolist()
+    return (a, b, c), (x, y, z, w)
 
 
 def draw_visuals(
@@ -89,7 +71,7 @@ def draw_visuals(
                 # The shadow map is too coarse for small objects and would draw stripes on them.
                 receive_shadow=False,
                 position=visual.origin.xyz,
-                wxyz=_wxyz(visual.origin),
+                wxyz=wxyz_from_rpy(visual.origin.rpy),
             )
 
 
@@ -105,7 +87,7 @@ def draw_collisions(
                 COLLISION_COLOR,
                 thickness=COLLISION_LINE_M,
                 position=collision.origin.xyz,
-                wxyz=_wxyz(collision.origin),
+                wxyz=wxyz_from_rpy(collision.origin.rpy),
             )
 
 
@@ -156,8 +138,3 @@ def _parts(
 
 def _color(visual: Visual) -> Color | None:
     return None if visual.material is None else visual.material.rgba
-
-
-def _wxyz(pose: Pose) -> Quaternion:
-    x, y, z, w = quaternion_from_rpy(pose.rpy).tolist()
-    return w, x, y, z

@@ -11,7 +11,7 @@ from arm_description.errors import DescriptionError
 from arm_description.mesh.data import MeshData, merged
 from arm_description.urdf.robot import Box, Cylinder, Mesh, Sphere
 from arm_description.view_fitting import Body, body_of
-from arm_node.rigid_transform import RigidTransform, rotated
+from arm_node.rigid_transform import RigidTransform
 from arm_viewer.scene.first_view import Obstacles
 from arm_viewer.scene.frames import Frames, node_name
 from arm_viewer.scene.poses import Poses
@@ -25,7 +25,6 @@ GROUND_M, GROUND_THICKNESS_M = 5.0, 0.05
 OPAQUE = 0.9
 INSIDE_OPACITY = 0.45
 """Of shapes while one looks inside."""
-AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 Matrix = NDArray[np.float64]
 _SOLIDS = {
     MarkerShape.BOX: Box((1.0, 1.0, 1.0)),
@@ -94,7 +93,8 @@ class Markers:
         bodies: list[Body] = []
         boxes: list[tuple[Matrix, Matrix, Matrix, Matrix]] = []
         for name, marker in self._seen.items():
-            turn, move = _matrix(self._origins[name].then(marker.pose))
+            matrix = np.array(self._origins[name].then(marker.pose).matrix())
+            turn, move = matrix[:3, :3], matrix[:3, 3]
             for part in _parts(name, marker.look):
                 points = part.vertices * marker.look.scale
                 low, high = points.min(axis=0), points.max(axis=0)
@@ -135,12 +135,6 @@ class Markers:
             )
             self._parts[name].append(drawn)
             drawn.on_click(lambda _: self._on_click(name.split("/")[-2]))
-
-
-def _matrix(pose: RigidTransform) -> tuple[Matrix, Matrix]:
-    """Return the rotation (3, 3) and the position (3,) of a pose."""
-    axes = [rotated(pose.rotation, axis) for axis in AXES]
-    return np.array(axes).T, np.array(pose.position)
 
 
 def _is_ground(look: MarkerLook) -> bool:
