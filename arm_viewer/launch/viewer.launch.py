@@ -7,6 +7,22 @@ from launch_py.substitutions import Call, LaunchConfiguration
 
 LOCAL_HOST = "127.0.0.1"
 SWITCH = ["true", "false"]
+ARGUMENTS = {
+    "viewer_port": ("8080", "port of the page", None),
+    "viewer_host": (
+        LOCAL_HOST,
+        "address that the page listens on; 0.0.0.0 serves other machines, by a token that it "
+        "prints",
+        None,
+    ),
+    "viewer_read_only": ("false", "let nobody do more than look at the page", SWITCH),
+    "display_config": ("", "RViz configuration that the page shows first", None),
+    "publish_joint_states": (
+        "false",
+        "publish joint states from the page's sliders, without a running robot",
+        SWITCH,
+    ),
+}
 
 
 def address(host: str, port: str) -> str:
@@ -21,31 +37,9 @@ def generate_launch_description() -> LaunchDescription:
     port, host = LaunchConfiguration("viewer_port"), LaunchConfiguration("viewer_host")
     return LaunchDescription(
         [
-            DeclareLaunchArgument(
-                "viewer_port", default_value="8080", description="port of the page"
-            ),
-            DeclareLaunchArgument(
-                "viewer_host",
-                default_value=LOCAL_HOST,
-                description="address that the page listens on; 0.0.0.0 serves other machines, by a "
-                "token that it prints",
-            ),
-            DeclareLaunchArgument(
-                "viewer_read_only",
-                default_value="false",
-                description="let nobody do more than look at the page",
-                choices=SWITCH,
-            ),
-            DeclareLaunchArgument(
-                "display_config",
-                default_value="",
-                description="RViz configuration that the page shows first",
-            ),
-            DeclareLaunchArgument(
-                "publish_joint_states",
-                default_value="false",
-                description="publish joint states from the page's sliders, without a running robot",
-                choices=SWITCH,
+            *(
+                DeclareLaunchArgument(name, default_value=value, description=text, choices=choices)
+                for name, (value, text, choices) in ARGUMENTS.items()
             ),
             Node(
                 package="arm_viewer",

@@ -23,7 +23,7 @@ from arm_viewer.calls.call import (
 from arm_viewer.calls.form import form_of, read_form
 from arm_viewer.ros.goal_call import GoalCall
 from arm_viewer.ros.observer import Observer, TopicTypes, used_types
-from arm_viewer.ros.parameter_call import ParameterForm, ParameterSetting
+from arm_viewer.ros.parameter_call import ParameterCall, parameter_form, parameter_setting
 from arm_viewer.ros.publication import Publication
 from arm_viewer.ros.service_call import ServiceCall
 
@@ -115,11 +115,12 @@ class CallDesk(Observer):
             self._report(number, state)
 
         if callee.kind is CallKind.PARAMETERS:
-            call = (
-                ParameterForm(self._node, callee.name, report)
+            questions = (
+                parameter_form(callee.name)
                 if isinstance(request, OpenForm)
-                else ParameterSetting(self._node, callee.name, request.typed, report)
+                else parameter_setting(request.typed)
             )
+            call = ParameterCall(self._node, callee.name, report, questions)
         else:
             class_ = interface_class(callee)
             message = _REQUESTS[callee.kind](class_)

@@ -1,6 +1,6 @@
 """The parameters of a node: read them into a form, and set those that were typed."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Generator, Mapping
 from typing import Any
 
 from rcl_interfaces.msg import Parameter, ParameterValue
@@ -18,23 +18,27 @@ from arm_viewer.calls.parameter_fields import VALUE_FIELDS, parameter_field, par
 from arm_viewer.ros.service_call import KnownService, Report
 
 MAX_PARAMETERS = 500
-Step = Callable[[float], str]
+Questions = Generator[tuple[type, str, Any], Any, CallState]
+"""Yields type and name of a service of the node and a request, gets the answer, and so on; returns
+what comes of it. A MessageValueError is a failure."""
 
 
-class _ParameterCall:
+class ParameterCall:
     """Asks a node's parameter services one after the other."""
 
-    def __init__(self, node: Node, name: str, report: Report, first: Step) -> None:
+    def __init__(self, node: Node, name: str, report: Report, questions: Questions) -> None:
+        """Begin with the first question."""
         self._node = node
         self._name = name
         self._report = report
-        self._step = first
-        self._services: dict[str, KnownService] = {}
+        self._questions = questions
+        self._services: list[KnownService] = []
+        self._ask_next(None)
         report(CallState(f"Asking {name}"))
 
     def check(self, now_s: float) -> None:
         """Ask, and report that no answer comes."""
-        problem = self._step(now_s)
+        problem = self._services[-1].ask(now_s, self._request, self._take)
         if problem:
             self._report(failure(problem))
 
@@ -44,96 +48,52 @@ class _ParameterCall:
 
     def close(self) -> None:
         """Destroy the clients."""
-        for service in self._services.values():
+        for service in self._services:
             service.close()
 
-    def ask(self, now_s: float, class_: Any, name: str, request: Any, then: Any) -> str:
-        """Ask one of the node's services; see `KnownService.ask`."""
-        if name not in self._services:
-            self._services[name] = KnownService(self._node, class_, f"{self._name}/{name}")
-        return self._services[name].ask(now_s, request, then)
-
-
-class ParameterForm(_ParameterCall):
-    """Reads the parameters of a node with their values, ranges and descriptions."""
-
-    def __init__(self, node: Node, name: str, report: Report) -> None:
-        """Ask for the names first."""
-        super().__init__(node, name, report, self._list)
-        self._names: list[str] = []
-        self._descriptors: list[Any] = []
-
-    def _list(self, now_s: float) -> str:
-        request = ListParameters.Request()
-        return self.ask(now_s, ListParameters, "list_parameters", request, self._take_names)
-
-    def _take_names(self, response: Any) -> None:
-        self._names = sorted(response.result.names)[:MAX_PARAMETERS]
-        self._step = self._describe
-
-    def _describe(self, now_s: float) -> str:
-        request = DescribeParameters.Request(names=self._names)
-        return self.ask(
-            now_s, DescribeParameters, "describe_parameters", request, self._take_descriptors
-        )
-
-    def _take_descriptors(self, response: Any) -> None:
-        self._descriptors = list(response.descriptors)
-        self._step = self._get
-
-    def _get(self, now_s: float) -> str:
-        request = GetParameters.Request(names=self._names)
-        return self.ask(now_s, GetParameters, "get_parameters", request, self._take_values)
-
-    def _take_values(self, response: Any) -> None:
-        # One that was undeclared meanwhile is missing, and then nobody knows which.
-        values = list(response.values)
-        if not len(self._names) == len(self._descriptors) == len(values):
-            changed = f"the parameters of {self._name} have changed meanwhile; try again"
-            self._report(failure(changed))
-            return
-        form = tuple(map(parameter_field, self._descriptors, values))
-        self._report(CallState("", is_over=True, form=form))
-
-
-class ParameterSetting(_ParameterCall):
-    """Sets parameters of a node."""
-
-    def __init__(self, node: Node, name: str, typed: Mapping[str, str], report: Report) -> None:
-        """Ask for the types first."""
-        super().__init__(node, name, report, self._describe)
-        self._typed = typed
-        self._parameters: list[Parameter] = []
-
-    def _describe(self, now_s: float) -> str:
-        request = DescribeParameters.Request(names=list(self._typed))
-        return self.ask(
-            now_s, DescribeParameters, "describe_parameters", request, self._take_descriptors
-        )
-
-    def _take_descriptors(self, response: Any) -> None:
-        kinds = {d.name: 0 if d.dynamic_typing else d.type for d in response.descriptors}
+    def _take(self, answer: Any) -> None:
         try:
-            for name, text in self._typed.items():
-                kind, content = parameter_value(kinds.get(name, 0), text, name)
-                value = ParameterValue(type=kind)
-                setattr(value, VALUE_FIELDS[kind], content)
-                self._parameters.append(Parameter(name=name, value=value))
+            self._ask_next(answer)
+        except StopIteration as end:
+            self._report(end.value)
         except MessageValueError as error:
             self._report(failure(str(error)))
-            return
-        self._step = self._set
 
-    def _set(self, now_s: float) -> str:
-        request = SetParameters.Request(parameters=self._parameters)
-        return self.ask(now_s, SetParameters, "set_parameters", request, self._take_results)
+    def _ask_next(self, answer: Any) -> None:
+        kind, service, self._request = self._questions.send(answer)
+        self._services.append(KnownService(self._node, kind, f"{self._name}/{service}"))
 
-    def _take_results(self, response: Any) -> None:
-        refused = [
-            f"{name}: {result.reason or 'refused'}"
-            for name, result in zip(self._typed, response.results, strict=False)
-            if not result.successful
-        ]
-        done = len(self._typed) - len(refused)
-        text = "; ".join(refused) or f"Set {done} of {len(self._typed)}"
-        self._report(CallState(text, is_over=True, is_failed=bool(refused)))
+
+def parameter_form(node_name: str) -> Questions:
+    """Read the parameters of a node with their values, ranges and descriptions."""
+    listed = yield ListParameters, "list_parameters", ListParameters.Request()
+    names = sorted(listed.result.names)[:MAX_PARAMETERS]
+    request = DescribeParameters.Request(names=names)
+    described = yield DescribeParameters, "describe_parameters", request
+    found = yield GetParameters, "get_parameters", GetParameters.Request(names=names)
+    # One that was undeclared meanwhile is missing, and then nobody knows which.
+    if not len(names) == len(described.descriptors) == len(found.values):
+        return failure(f"the parameters of {node_name} have changed meanwhile; try again")
+    form = tuple(map(parameter_field, described.descriptors, found.values))
+    return CallState("", is_over=True, form=form)
+
+
+def parameter_setting(typed: Mapping[str, str]) -> Questions:
+    """Set parameters of a node, each by the type that it has."""
+    request = DescribeParameters.Request(names=list(typed))
+    described = yield DescribeParameters, "describe_parameters", request
+    kinds = {d.name: 0 if d.dynamic_typing else d.type for d in described.descriptors}
+    parameters: list[Parameter] = []
+    for name, text in typed.items():
+        kind, content = parameter_value(kinds.get(name, 0), text, name)
+        value = ParameterValue(type=kind)
+        setattr(value, VALUE_FIELDS[kind], content)
+        parameters.append(Parameter(name=name, value=value))
+    answer = yield SetParameters, "set_parameters", SetParameters.Request(parameters=parameters)
+    refused = [
+        f"{name}: {result.reason or 'refused'}"
+        for name, result in zip(typed, answer.results, strict=False)
+        if not result.successful
+    ]
+    text = "; ".join(refused) or f"Set {len(typed)} of {len(typed)}"
+    return CallState(text, is_over=True, is_failed=bool(refused))
