@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import pytest
+from manager_bench import ManagerBench
 
 from arm_control import (
     Controller,
     ControllerContext,
     ControllerError,
-    ControllerManager,
     InterfaceConfiguration,
     ReturnType,
 )
@@ -91,15 +91,12 @@ class Observer:
         self.changes += 1
 
 
-class Bench:
+class Bench(ManagerBench):
     """A manager at 100 Hz over four fake joints, and probes loaded into it."""
 
     def __init__(self) -> None:
-        self.hardware = fake_hardware()
-        self.manager = ControllerManager([self.hardware], 100)
-        self.manager.bring_up()
+        super().__init__(fake_hardware())
         self.events: list[str] = []
-        self.time_s = 0.0
 
     def load(self, name: str, *, fallback_names: tuple[str, ...] = ()) -> Probe:
         """Load a probe."""
@@ -128,15 +125,6 @@ class Bench:
     def states(self) -> dict[str, str]:
         """Return the state of each controller."""
         return {status.name: status.state.label for status in self.manager.list_controllers()}
-
-    def tick(self, count: int = 1, period_s: float = 0.01) -> None:
-        """Run cycles in the order of a simulation."""
-        for _ in range(count):
-            self.manager.update(self.time_s, period_s)
-            self.manager.write(self.time_s, period_s)
-            self.time_s += period_s
-            self.manager.read(self.time_s, period_s)
-            self.manager.publish(self.time_s, period_s)
 
 
 @pytest.fixture

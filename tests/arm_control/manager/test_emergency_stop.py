@@ -11,14 +11,10 @@ from arm_control.testing import FakeHardware, fake_hardware
 POSITIONS = ("j0/position", "j1/position")
 
 
-def activate(bench, *names: str) -> bool:
-    return bench.manager.switch_controller(SwitchRequest(activate=names)).ok
-
-
 def test_controllers_with_commands_rest_and_others_go_on(bench):
     mover = bench.configure("mover", commands=POSITIONS)
     watcher = bench.configure("watcher", states=POSITIONS)
-    assert activate(bench, "mover", "watcher")
+    bench.switch("mover watcher")
     bench.events.clear()
     assert bench.manager.set_emergency_stop(True)
     bench.tick(3)
@@ -51,15 +47,15 @@ def test_no_controller_is_activated_meanwhile(bench, caplog):
     # `arm control set_controller_state` and the spawner refer to the log for the reason.
     assert result.message in caplog.text
     bench.manager.set_emergency_stop(False)
-    assert activate(bench, "mover")
+    bench.switch("mover")
 
 
 def test_a_halted_controller_is_deactivated_without_a_second_call(bench):
     mover = bench.configure("mover", commands=POSITIONS)
-    assert activate(bench, "mover")
+    bench.switch("mover")
     bench.manager.set_emergency_stop(True)
     bench.events.clear()
-    assert bench.manager.switch_controller(SwitchRequest(deactivate=("mover",))).ok
+    bench.switch("", "mover")
     assert bench.events == []
     assert mover.halted_by == ""
     bench.manager.set_emergency_stop(False)
@@ -71,7 +67,7 @@ def test_a_halted_controller_is_deactivated_without_a_second_call(bench):
 def test_a_controller_that_cannot_go_on_is_deactivated(bench):
     mover = bench.configure("mover", commands=POSITIONS)
     bench.configure("other", commands=("j2/position",))
-    assert activate(bench, "mover", "other")
+    bench.switch("mover other")
     bench.manager.set_emergency_stop(True)
     mover.refuses.add("activate")
     bench.manager.set_emergency_stop(False)
@@ -82,7 +78,7 @@ def test_a_controller_that_cannot_go_on_is_deactivated(bench):
 
 def test_the_manager_shuts_down_while_it_is_stopped(bench):
     bench.configure("mover", commands=POSITIONS)
-    assert activate(bench, "mover")
+    bench.switch("mover")
     bench.manager.set_emergency_stop(True)
     bench.manager.shutdown()
     assert bench.events.count("mover deactivate") == 1
@@ -154,7 +150,7 @@ def test_hardware_that_can_is_told_to_stop(fails, caplog):
 
 def test_a_reset_leaves_what_is_halted_alone(bench):
     bench.configure("mover", commands=POSITIONS)
-    assert activate(bench, "mover")
+    bench.switch("mover")
     bench.manager.set_emergency_stop(True)
     bench.events.clear()
     bench.manager.state.reset()

@@ -15,10 +15,6 @@ POSITIONS = ("j0/position", "j1/position")
 NAME = "FakeSystem"
 
 
-def activate(bench, *names: str) -> bool:
-    return bench.manager.switch_controller(SwitchRequest(activate=names)).ok
-
-
 def set_hardware(bench, state: LifecycleState, name: str = NAME) -> None:
     bench.manager.set_hardware_component_state(name, state)
 
@@ -26,7 +22,7 @@ def set_hardware(bench, state: LifecycleState, name: str = NAME) -> None:
 def test_a_controller_rests_while_its_hardware_is_inactive(bench, caplog):
     mover = bench.configure("mover", commands=POSITIONS)
     watcher = bench.configure("watcher", states=POSITIONS)
-    assert activate(bench, "mover", "watcher")
+    bench.switch("mover watcher")
     bench.events.clear()
     set_hardware(bench, LifecycleState.INACTIVE)
     bench.tick(2)
@@ -51,14 +47,14 @@ def test_the_manager_of_a_namespace_is_named(caplog, bench):
     bench.manager = ControllerManager([bench.hardware], 100, name="/left/controller_manager")
     bench.manager.bring_up()
     bench.configure("mover", commands=POSITIONS)
-    assert activate(bench, "mover")
+    bench.switch("mover")
     set_hardware(bench, LifecycleState.INACTIVE)
     assert "FakeSystem active -c /left/controller_manager" in caplog.text
 
 
 def test_no_command_from_before_moves_a_joint_once_hardware_is_active_again(bench):
     bench.configure("mover", commands=("j0/position",))
-    assert activate(bench, "mover")
+    bench.switch("mover")
     bench.hardware.commands[0] = 0.6
     bench.tick()
     set_hardware(bench, LifecycleState.INACTIVE)
@@ -75,7 +71,7 @@ def test_limits_start_again_where_the_joint_is(bench):
     bench.manager = manager = ControllerManager([bench.hardware], 100, limits=limits)
     manager.bring_up()
     bench.configure("mover", commands=("j0/position",))
-    assert activate(bench, "mover")
+    bench.switch("mover")
     bench.hardware.commands[0] = 0.0
     bench.tick()
     set_hardware(bench, LifecycleState.INACTIVE)
@@ -88,7 +84,7 @@ def test_limits_start_again_where_the_joint_is(bench):
 
 def test_hardware_that_is_cleaned_up_forgets_its_commands(bench):
     bench.configure("mover", commands=("j0/position",))
-    assert activate(bench, "mover")
+    bench.switch("mover")
     bench.hardware.commands[0] = 0.6
     set_hardware(bench, LifecycleState.UNCONFIGURED)
     assert bench.states() == {"mover": "inactive"}
@@ -112,18 +108,18 @@ def two(bench):
 def test_a_controller_of_two_components_stops_the_joints_of_both(two):
     two.configure("mover", commands=("j0/velocity", "j1/velocity"))
     two.configure("other", commands=("j1/position",))
-    assert activate(two, "mover")
+    two.switch("mover")
     for part in two.hardware:
         part.commands[1] = 2.0
     set_hardware(two, LifecycleState.INACTIVE, "Left")
     two.tick()
     assert two.hardware[1].commands[1] == 0.0
-    assert activate(two, "other")
+    two.switch("other")
 
 
 def test_the_emergency_stop_and_inactive_hardware_overlap_in_any_order(bench):
     mover = bench.configure("mover", commands=POSITIONS)
-    assert activate(bench, "mover")
+    bench.switch("mover")
     bench.events.clear()
     bench.manager.set_emergency_stop(True)
     set_hardware(bench, LifecycleState.INACTIVE)
@@ -140,7 +136,7 @@ def test_the_emergency_stop_and_inactive_hardware_overlap_in_any_order(bench):
 
 def test_hardware_that_moved_during_a_stop_is_held_where_it_is(bench):
     bench.configure("mover", commands=("j0/position",))
-    assert activate(bench, "mover")
+    bench.switch("mover")
     bench.manager.set_emergency_stop(True)
     set_hardware(bench, LifecycleState.INACTIVE)
     bench.hardware.states[0] = 0.4
@@ -154,7 +150,7 @@ def test_a_controller_on_hardware_that_was_inactive_from_the_start_waits(bench):
     bench.manager = ControllerManager([bench.hardware], 100, policy)
     bench.manager.bring_up(inactive=[NAME])
     mover = bench.configure("mover", commands=POSITIONS)
-    assert activate(bench, "mover")
+    bench.switch("mover")
     assert mover.idle_reason == "hardware component 'FakeSystem' is inactive"
     set_hardware(bench, LifecycleState.ACTIVE)
     assert mover.idle_reason == ""
@@ -167,7 +163,7 @@ def test_hardware_that_deactivates_itself_may_leave_its_controllers_halted(bench
     bench.manager = ControllerManager([bench.hardware], 100, policy)
     bench.manager.bring_up()
     mover = bench.configure("mover", commands=POSITIONS)
-    assert activate(bench, "mover")
+    bench.switch("mover")
     bench.hardware.write_result = HardwareReturn.DEACTIVATE
     bench.tick()
     assert bench.states() == {"mover": "active"}
@@ -178,10 +174,10 @@ def test_a_snapshot_of_inactive_hardware_under_active_controllers_is_restored(be
     mover = bench.configure("mover", commands=POSITIONS)
     bench.hardware.save_state = lambda: None
     bench.hardware.load_state = lambda state: None
-    assert activate(bench, "mover")
+    bench.switch("mover")
     set_hardware(bench, LifecycleState.INACTIVE)
     saved = bench.manager.state.save()
-    bench.manager.switch_controller(SwitchRequest(deactivate=("mover",)))
+    bench.switch("", "mover")
     bench.manager.state.check(saved)
     bench.manager.state.align(saved)
     assert bench.states() == {"mover": "active"}
@@ -205,10 +201,10 @@ def test_two_controllers_do_not_command_one_joint_that_has_one_mode(bench, caplo
     bench.configure("light", commands=("j0/brightness",))
     request = SwitchRequest(activate=("places", "speeds"))
     assert bench.manager.switch_controller(request).message == PREPARE_REJECTED
-    assert activate(bench, "places", "both", "light")
-    assert not activate(bench, "speeds")
+    bench.switch("places both light")
+    assert not bench.manager.switch_controller(SwitchRequest(("speeds",))).ok
     assert (
         "joint 'j0' obeys one kind of command at a time: controller 'places' claims "
         "'j0/position', and 'speeds' 'j0/velocity'"
     ) in caplog.text
-    assert bench.manager.switch_controller(SwitchRequest(("speeds",), ("places",))).ok
+    bench.switch("speeds", "places")

@@ -4,8 +4,9 @@ from math import inf, nan, pi
 from typing import Any
 
 import pytest
+from manager_bench import PERIOD_S, ManagerBench
 
-from arm_control import ControllerContext, ControllerManager, SwitchRequest
+from arm_control import ControllerContext
 from arm_control.controllers.diff_drive.controller import DiffDriveController
 from arm_control.controllers.diff_drive.odometry import PlanarPose, PlanarTwist
 from arm_control.controllers.forward_command.controller import (
@@ -14,10 +15,8 @@ from arm_control.controllers.forward_command.controller import (
 )
 from arm_control.errors import ControllerError, ControllerManagerError, ParameterError
 from arm_control.manager.registry import controller_class, controller_types, is_chainable
-from arm_control.manager.switch_planner import Strictness
 from arm_control.testing import fake_hardware
 
-PERIOD_S = 0.01
 LEFT, RIGHT = ["left_front", "left_back"], ["right_front", "right_back"]
 WHEELS = {"left_wheel_names": LEFT, "right_wheel_names": RIGHT}
 SIZES = {"wheel_separation": 0.4, "wheel_radius": 0.1}
@@ -39,21 +38,20 @@ class Sink:
         return self.odometry[-1][1]
 
 
-class Bench:
+class Bench(ManagerBench):
     """Four wheels that follow their commands, and a controller for them."""
 
     def __init__(self) -> None:
-        self.hardware = fake_hardware(
-            (*LEFT, *RIGHT),
-            command_interfaces=("velocity",),
-            state_interfaces=("position", "velocity"),
+        super().__init__(
+            fake_hardware(
+                (*LEFT, *RIGHT),
+                command_interfaces=("velocity",),
+                state_interfaces=("position", "velocity"),
+            )
         )
-        self.manager = ControllerManager([self.hardware], 100)
-        self.manager.bring_up()
         self.drive = DiffDriveController(ControllerContext("base", 100))
         self.drive.sink = self.sink = Sink()
         self.manager.load_controller(self.drive, "diff_drive_controller/DiffDriveController")
-        self.time_s = 0.0
 
     def start(self, **values: Any) -> None:
         parameters = DiffDriveController.build_parameters({**WHEELS, **SIZES, **values})
@@ -61,25 +59,13 @@ class Bench:
         self.switch("base")
         self.tick()
 
-    def switch(self, activate: str, deactivate: str = "") -> None:
-        request = SwitchRequest(
-            tuple(activate.split()), tuple(deactivate.split()), Strictness.STRICT
-        )
-        result = self.manager.switch_controller(request)
-        assert result.ok, result.message
-
     def go(self, linear: float, angular: float, stamp_s: float | None = None) -> str:
         return self.drive.offer(PlanarTwist(linear, angular), stamp_s)
 
-    def tick(self, count: int = 1) -> None:
-        for _ in range(count):
-            self.manager.update(self.time_s, PERIOD_S)
-            self.manager.write(self.time_s, PERIOD_S)
-            states = self.hardware.states.reshape(4, 2)
-            states[:, 0] += self.hardware.commands * PERIOD_S
-            states[:, 1] = self.hardware.commands
-            self.time_s += PERIOD_S
-            self.manager.read(self.time_s, PERIOD_S)
+    def move(self, period_s: float) -> None:
+        states = self.hardware.states.reshape(4, 2)
+        states[:, 0] += self.hardware.commands * period_s
+        states[:, 1] = self.hardware.commands
 
     @property
     def wheels(self) -> list[float]:

@@ -22,7 +22,7 @@ def follow(bench, make):
     def active(timeout_s: float) -> JointGroupPositionController:
         parameters = PositionGroupParameters(joints=JOINTS, command_timeout=timeout_s)
         controller = make(JointGroupPositionController, parameters)
-        assert bench.manager.switch_controller(SwitchRequest(activate=("it",))).ok
+        bench.switch("it")
         return controller
 
     return active

@@ -11,7 +11,6 @@ from arm_control import (
     ControllerContext,
     ControllerManager,
     ControllerManagerError,
-    SwitchRequest,
 )
 from arm_control.controllers.forward_command.controller import (
     EffortGroupParameters,
@@ -33,19 +32,11 @@ from arm_control.testing import fake_hardware
 JOINTS = ("j0", "j1", "j2", "j3")
 
 
-def activate(bench: Any) -> None:
-    assert bench.manager.switch_controller(SwitchRequest(("it",))).ok
-
-
-def deactivate(bench: Any) -> None:
-    assert bench.manager.switch_controller(SwitchRequest((), ("it",))).ok
-
-
 @pytest.fixture
 def position(bench: Any, make: Callable[..., Any]) -> JointGroupPositionController:
     """Return an active position controller of all four joints."""
     controller = make(JointGroupPositionController, PositionGroupParameters(joints=JOINTS))
-    activate(bench)
+    bench.switch("it")
     return controller
 
 
@@ -61,7 +52,7 @@ def test_a_command_reaches_its_interfaces(bench: Any, position: Any) -> None:
 
 def test_the_order_is_that_of_the_joints_parameter(bench: Any, make: Any) -> None:
     controller = make(JointGroupPositionController, PositionGroupParameters(joints=("j2", "j0")))
-    activate(bench)
+    bench.switch("it")
     controller.offer([2.0, 0.0])
     bench.tick()
     assert commands(bench)[0::2] == [0.0, 2.0]
@@ -130,21 +121,21 @@ def test_a_wrong_length_deactivates_the_controller(
 def test_activation_clears_a_wrong_length(bench: Any, position: Any) -> None:
     position.offer([1.0])
     bench.tick()
-    activate(bench)
+    bench.switch("it")
     bench.tick(2)
     assert bench.states() == {"it": "active"}
 
 
 def test_what_came_while_inactive_is_not_replayed(bench: Any, position: Any) -> None:
-    deactivate(bench)
+    bench.switch("", "it")
     position.offer([1.0] * 4)
-    activate(bench)
+    bench.switch("it")
     bench.tick()
     assert np.isnan(commands(bench)).all()
 
 
 def test_an_inactive_controller_moves_nothing(bench: Any, position: Any) -> None:
-    deactivate(bench)
+    bench.switch("", "it")
     position.offer([1.0] * 4)
     bench.tick()
     assert np.isnan(commands(bench)).all()
@@ -153,7 +144,7 @@ def test_an_inactive_controller_moves_nothing(bench: Any, position: Any) -> None
 def test_position_keeps_its_command_after_deactivation(bench: Any, position: Any) -> None:
     position.offer([1.0] * 4)
     bench.tick()
-    deactivate(bench)
+    bench.switch("", "it")
     assert commands(bench) == [1.0] * 4
 
 
@@ -170,10 +161,10 @@ def test_velocity_and_effort_go_to_zero_when_they_end(
     bench.manager = ControllerManager([fake_hardware(command_interfaces=(interface,))], 100)
     bench.manager.bring_up()
     controller = make(class_, parameters(joints=JOINTS))
-    activate(bench)
+    bench.switch("it")
     controller.offer([1.0] * 4)
     bench.tick()
-    deactivate(bench)
+    bench.switch("", "it")
     assert commands(bench) == [0.0] * 4
 
 
@@ -181,7 +172,7 @@ def test_the_forward_controller_takes_any_interface(bench: Any, make: Any) -> No
     controller = make(
         ForwardCommandController, ForwardCommandParameters(("j1",), interface_name="position")
     )
-    activate(bench)
+    bench.switch("it")
     controller.offer([5.0])
     bench.tick()
     assert commands(bench)[1] == 5.0
@@ -196,7 +187,7 @@ def test_the_multi_interface_controller_commands_one_joint(bench: Any, make: Any
         MultiInterfaceForwardCommandController,
         MultiInterfaceForwardCommandParameters("j1", ("effort", "position")),
     )
-    activate(bench)
+    bench.switch("it")
     controller.offer([7.0, 8.0])
     bench.tick()
     assert commands(bench)[3:6:2] == [8.0, 7.0]
@@ -249,7 +240,7 @@ def test_an_empty_parameter_fails_the_configuration(
 
 def test_a_joint_position_controller_commands_its_one_joint(bench: Any, make: Any) -> None:
     controller = make(JointPositionController, JointPositionParameters(joint="j2"))
-    activate(bench)
+    bench.switch("it")
     controller.offer([0.7])
     bench.tick()
     assert commands(bench)[2] == 0.7

@@ -5,18 +5,17 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from manager_bench import PERIOD_S, ManagerBench
 
-from arm_control import ControllerContext, ControllerManager
+from arm_control import ControllerContext
 from arm_control.controllers.gripper.controller import GripperController
 from arm_control.controllers.gripper.goals import GripperRequest, GripperResult
 from arm_control.manager.registry import controller_class
-from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_control.testing import fake_hardware
 
 POSITION = "position_controllers/GripperActionController"
 EFFORT = "effort_controllers/GripperActionController"
 PARALLEL = "parallel_gripper_action_controller/GripperActionController"
-PERIOD_S = 0.01
 
 
 class RecordingSink:
@@ -34,7 +33,7 @@ class RecordingSink:
         self.results[goal_id] = result
 
 
-class Rig:
+class Rig(ManagerBench):
     """An active controller of the joint 'grip', whose state the test sets.
 
     Attributes:
@@ -43,15 +42,14 @@ class Rig:
     """
 
     def __init__(self, type_name: str, parameters: dict[str, Any]) -> None:
-        self.hardware = fake_hardware(
-            ["grip"],
-            command_interfaces=("position", "effort", "most_effort", "most_velocity"),
-            state_interfaces=("position", "velocity", "temperature"),
+        super().__init__(
+            fake_hardware(
+                ["grip"],
+                command_interfaces=("position", "effort", "most_effort", "most_velocity"),
+                state_interfaces=("position", "velocity", "temperature"),
+            )
         )
-        self.manager = ControllerManager([self.hardware], round(1.0 / PERIOD_S))
-        self.manager.bring_up()
         self.place(0.0)
-        self.time_s = 0.0
         self.controller: GripperController[Any] = controller_class(type_name)(
             ControllerContext("gripper", 100)
         )
@@ -61,15 +59,6 @@ class Rig:
         self.manager.load_controller(self.controller, type_name)
         self.manager.configure_controller("gripper", self.controller.build_parameters(self.values))
 
-    def switch(self, *, on: bool) -> None:
-        request = SwitchRequest(
-            activate=("gripper",) if on else (),
-            deactivate=() if on else ("gripper",),
-            strictness=Strictness.STRICT,
-        )
-        result = self.manager.switch_controller(request)
-        assert result.ok, result.message
-
     def set(self, **parameters: Any) -> None:
         """Change parameters while the controller runs."""
         self.values.update(parameters)
@@ -78,12 +67,7 @@ class Rig:
     def place(self, position: float, velocity: float = 0.0) -> None:
         """Put the joint somewhere, moving or not; it stays so whatever is commanded."""
         self.position, self.velocity = position, velocity
-        self._show()
-
-    def tick(self, count: int = 1) -> None:
-        for _ in range(count):
-            self.manager.update(self.time_s, PERIOD_S)
-            self.time_s += PERIOD_S
+        self.move(PERIOD_S)
 
     def run(self, seconds: float) -> None:
         self.tick(round(seconds / PERIOD_S))
@@ -103,7 +87,7 @@ class Rig:
     def commanded(self, kind: str = "position") -> float:
         return float(self.hardware.commands[self.hardware.command_interfaces.index(f"grip/{kind}")])
 
-    def _show(self) -> None:
+    def move(self, period_s: float) -> None:
         self.hardware.states[:2] = self.position, self.velocity
 
 
@@ -114,7 +98,7 @@ def make_rig() -> Callable[..., Rig]:
     def make(type_name: str = POSITION, *, activate: bool = True, **parameters: Any) -> Rig:
         rig = Rig(type_name, parameters)
         if activate:
-            rig.switch(on=True)
+            rig.switch("gripper")
         return rig
 
     return make

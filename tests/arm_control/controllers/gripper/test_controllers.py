@@ -28,7 +28,7 @@ def test_position_keeps_its_command_after_deactivation(make_rig: Any) -> None:
     rig = make_rig(POSITION)
     rig.goal(0.7)
     rig.tick()
-    rig.switch(on=False)
+    rig.switch("", "gripper")
     assert rig.commanded() == 0.7
 
 
@@ -110,8 +110,8 @@ def test_the_integral_is_clamped_and_forgotten_at_activation(make_rig: Any) -> N
     rig.goal(1.0)
     rig.run(0.5)
     assert rig.commanded("effort") == pytest.approx(0.3)
-    rig.switch(on=False)
-    rig.switch(on=True)
+    rig.switch("", "gripper")
+    rig.switch("gripper")
     rig.tick()
     assert rig.commanded("effort") == 0.0
 
@@ -120,7 +120,7 @@ def test_effort_is_0_after_deactivation(make_rig: Any) -> None:
     rig = effort_rig(make_rig)
     rig.goal(0.7)
     rig.tick()
-    rig.switch(on=False)
+    rig.switch("", "gripper")
     assert rig.commanded("effort") == 0.0
 
 

@@ -137,7 +137,7 @@ def test_a_new_goal_cancels_the_one_before(rig: Any) -> None:
 def test_deactivation_aborts_the_goal(rig: Any) -> None:
     rig.goal(0.4)
     rig.tick()
-    rig.switch(on=False)
+    rig.switch("", "gripper")
     assert rig.result.outcome is GoalOutcome.ABORTED
     assert (rig.result.stalled, rig.result.reached_goal) == (False, False)
 
@@ -145,7 +145,7 @@ def test_deactivation_aborts_the_goal(rig: Any) -> None:
 def test_deactivation_ends_goals_that_no_cycle_has_seen(rig: Any) -> None:
     rig.goal(0.4, "first")
     rig.goal(0.5, "second")
-    rig.switch(on=False)
+    rig.switch("", "gripper")
     assert {name: result.outcome for name, result in rig.sink.results.items()} == {
         "first": GoalOutcome.CANCELED,
         "second": GoalOutcome.ABORTED,
@@ -175,12 +175,12 @@ def test_every_activation_is_reported_and_starts_at_the_joints_position(make_rig
     rig = make_rig(activate=False)
     assert rig.sink.openings == 0
     rig.place(0.2)
-    rig.switch(on=True)
+    rig.switch("gripper")
     rig.tick()
     assert (rig.sink.openings, rig.commanded()) == (1, 0.2)
-    rig.switch(on=False)
+    rig.switch("", "gripper")
     rig.place(0.3)
-    rig.switch(on=True)
+    rig.switch("gripper")
     rig.tick()
     assert (rig.sink.openings, rig.commanded()) == (2, 0.3)
 

@@ -29,7 +29,7 @@ def test_a_cancel_holds_the_last_known_position(make_rig: Any) -> None:
 def test_an_activation_holds_the_position_as_soon_as_it_is_known(make_rig: Any) -> None:
     rig = make_rig(POSITION, activate=False)
     rig.place(nan)
-    rig.switch(on=True)
+    rig.switch("gripper")
     rig.tick(3)
     assert isnan(rig.commanded())
 
@@ -44,9 +44,9 @@ def test_what_was_seen_before_an_activation_does_not_count(make_rig: Any) -> Non
     rig = make_rig(POSITION)
     rig.place(0.2)
     rig.tick()
-    rig.switch(on=False)
+    rig.switch("", "gripper")
     rig.place(nan)
-    rig.switch(on=True)
+    rig.switch("gripper")
     rig.tick()
 
     assert isnan(rig.commanded())

@@ -15,7 +15,6 @@ from arm_control.controllers.joint_trajectory.goals import GoalRequest, GoalResu
 from arm_control.controllers.joint_trajectory.parameters import JointTrajectoryParameters
 from arm_control.controllers.joint_trajectory.trajectory import TrajectoryPoint, TrajectoryRequest
 from arm_control.errors import ControllerManagerError
-from arm_control.manager.switch_planner import Strictness, SwitchRequest
 from arm_control.parameters import build_parameters
 
 JOINTS = ("j0", "j1", "j2", "j3")
@@ -61,11 +60,6 @@ def controller(bench: Any, sink: Results) -> JointTrajectoryController:
     return controller
 
 
-def switch(bench: Any, activate: tuple[str, ...] = (), deactivate: tuple[str, ...] = ()) -> None:
-    result = bench.manager.switch_controller(SwitchRequest(activate, deactivate, Strictness.STRICT))
-    assert result.ok, result.message
-
-
 def go(controller: JointTrajectoryController, time_s: float, *positions: float) -> None:
     goal = GoalRequest(1, TrajectoryRequest(JOINTS, [TrajectoryPoint(time_s, positions)]))
     assert controller.submit_goal(goal) is None
@@ -78,7 +72,7 @@ def positions(bench: Any) -> list[float]:
 
 def test_follows_a_goal(bench: Any, controller: JointTrajectoryController, sink: Results):
     bench.manager.configure_controller("jtc", PARAMETERS)
-    switch(bench, ("jtc",))
+    bench.switch("jtc")
     go(controller, 0.5, 1.0, 2.0, 3.0, 4.0)
     bench.tick(51)
 
@@ -88,7 +82,7 @@ def test_follows_a_goal(bench: Any, controller: JointTrajectoryController, sink:
 
 def test_runs_at_its_own_rate(bench: Any, controller: JointTrajectoryController):
     bench.manager.configure_controller("jtc", PARAMETERS, 25)
-    switch(bench, ("jtc",))
+    bench.switch("jtc")
     go(controller, 0.4, 1.0, 2.0, 3.0, 4.0)
     bench.tick(45)
 
@@ -102,10 +96,10 @@ def test_takes_over_from_another_controller_without_a_jump(
     bench.manager.load_controller(forward, "test")
     bench.manager.configure_controller("forward", PositionGroupParameters(JOINTS))
     bench.manager.configure_controller("jtc", PARAMETERS)
-    switch(bench, ("forward",))
+    bench.switch("forward")
     forward.offer([0.1, 0.2, 0.3, 0.4])
     bench.tick()
-    switch(bench, ("jtc",), ("forward",))
+    bench.switch("jtc", "forward")
     bench.tick(10)
 
     assert positions(bench) == [0.1, 0.2, 0.3, 0.4]
@@ -118,10 +112,10 @@ def test_hands_over_in_the_middle_of_a_goal(
     bench.manager.load_controller(forward, "test")
     bench.manager.configure_controller("forward", PositionGroupParameters(JOINTS))
     bench.manager.configure_controller("jtc", PARAMETERS)
-    switch(bench, ("jtc",))
+    bench.switch("jtc")
     go(controller, 1.0, 1.0, 1.0, 1.0, 1.0)
     bench.tick(51)
-    switch(bench, ("forward",), ("jtc",))
+    bench.switch("forward", "jtc")
     bench.tick(10)
 
     assert [result.message for result in sink.results] == [
@@ -152,7 +146,7 @@ def test_says_why_it_is_not_configured(
 def test_can_be_configured_again(bench: Any, controller: JointTrajectoryController):
     bench.manager.configure_controller("jtc", PARAMETERS)
     bench.manager.configure_controller("jtc", replace(PARAMETERS, joints=("j0",)))
-    switch(bench, ("jtc",))
+    bench.switch("jtc")
     bench.tick()
 
     (status,) = bench.manager.list_controllers()

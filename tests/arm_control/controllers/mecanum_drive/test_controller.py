@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from manager_bench import PERIOD_S, ManagerBench
 
-from arm_control import ControllerContext, ControllerManager, SwitchRequest
+from arm_control import ControllerContext
 from arm_control.controllers.forward_command.controller import (
     ForwardCommandController,
     ForwardCommandParameters,
@@ -21,10 +22,8 @@ from arm_control.controllers.mecanum_drive.kinematics import (
 )
 from arm_control.errors import ControllerError, ControllerManagerError, ParameterError
 from arm_control.manager.registry import controller_class
-from arm_control.manager.switch_planner import Strictness
 from arm_control.testing import fake_hardware
 
-PERIOD_S = 0.01
 TYPE = "mecanum_drive_controller/MecanumDriveController"
 JOINTS = ("fl", "fr", "rr", "rl")
 NAMES = ("front_left", "front_right", "rear_right", "rear_left")
@@ -50,19 +49,16 @@ class Sink:
         self.references.append(reference)
 
 
-class Bench:
+class Bench(ManagerBench):
     """Four wheels that turn as commanded, and a controller for them."""
 
     def __init__(self) -> None:
-        self.hardware = fake_hardware(
-            JOINTS, command_interfaces=("velocity",), state_interfaces=("velocity",)
+        super().__init__(
+            fake_hardware(JOINTS, command_interfaces=("velocity",), state_interfaces=("velocity",))
         )
-        self.manager = ControllerManager([self.hardware], 100)
-        self.manager.bring_up()
         self.drive = MecanumDriveController(ControllerContext("base", 100))
         self.drive.sink = self.sink = Sink()
         self.manager.load_controller(self.drive, TYPE)
-        self.time_s = 0.0
 
     def start(self, **values: Any) -> None:
         self.configure(**values)
@@ -73,20 +69,8 @@ class Bench:
         parameters = MecanumDriveController.build_parameters({**WHEELS, **SIZES, **values})
         self.manager.configure_controller("base", parameters)
 
-    def switch(self, activate: str, deactivate: str = "") -> None:
-        request = SwitchRequest(
-            tuple(activate.split()), tuple(deactivate.split()), Strictness.STRICT
-        )
-        result = self.manager.switch_controller(request)
-        assert result.ok, result.message
-
-    def tick(self, count: int = 1) -> None:
-        for _ in range(count):
-            self.manager.update(self.time_s, PERIOD_S)
-            self.manager.write(self.time_s, PERIOD_S)
-            self.hardware.states[:] = self.hardware.commands
-            self.time_s += PERIOD_S
-            self.manager.read(self.time_s, PERIOD_S)
+    def move(self, period_s: float) -> None:
+        self.hardware.states[:] = self.hardware.commands
 
     @property
     def wheels(self) -> list[float]:

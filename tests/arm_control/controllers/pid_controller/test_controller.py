@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from manager_bench import PERIOD_S, ManagerBench
 
-from arm_control import ControllerContext, ControllerManager, SwitchRequest
+from arm_control import ControllerContext
 from arm_control.controllers.forward_command.controller import (
     ForwardCommandController,
     ForwardCommandParameters,
@@ -14,11 +15,9 @@ from arm_control.controllers.forward_command.controller import (
 from arm_control.controllers.joint_trajectory.controller import JointTrajectoryController
 from arm_control.controllers.pid_controller.controller import STATE_FIELDS, PidController, PidTerms
 from arm_control.errors import ControllerError, ControllerManagerError, ParameterError
-from arm_control.manager.switch_planner import Strictness
 from arm_control.testing import fake_hardware
 
 DOFS = ["j0", "j1"]
-PERIOD_S = 0.01
 
 
 class Sink:
@@ -36,21 +35,20 @@ class Sink:
         return self.states[-1][:, STATE_FIELDS.index(field)].tolist()
 
 
-class PidBench:
-    """A manager over two joints that do not move by themselves, and a PID controller."""
+class PidBench(ManagerBench):
+    """Two joints that do not move by themselves, and a PID controller."""
 
     def __init__(self) -> None:
-        self.hardware = fake_hardware(
-            ("j0", "j1"),
-            command_interfaces=("effort",),
-            state_interfaces=("position", "velocity"),
+        super().__init__(
+            fake_hardware(
+                ("j0", "j1"),
+                command_interfaces=("effort",),
+                state_interfaces=("position", "velocity"),
+            )
         )
-        self.manager = ControllerManager([self.hardware], 100)
-        self.manager.bring_up()
         self.pid = PidController(ControllerContext("pid", 100))
         self.pid.sink = self.sink = Sink()
         self.manager.load_controller(self.pid, "pid_controller/PidController")
-        self.time_s = 0.0
 
     def configure(self, **values: Any) -> None:
         defaults = {
@@ -67,24 +65,14 @@ class PidBench:
     def change(self, **values: Any) -> None:
         self.pid.update_parameters(PidController.build_parameters({**self.given, **values}))
 
-    def activate(self, names: str = "pid") -> None:
-        result = self.manager.switch_controller(
-            SwitchRequest(tuple(names.split()), (), Strictness.STRICT)
-        )
-        assert result.ok, result.message
-
     def measure(self, positions: list[float], velocities: list[float] | None = None) -> None:
         states = self.hardware.states.reshape(2, 2)
         states[:, 0] = positions
         if velocities is not None:
             states[:, 1] = velocities
 
-    def tick(self, count: int = 1) -> list[float]:
-        for _ in range(count):
-            self.manager.read(self.time_s, PERIOD_S)
-            self.manager.update(self.time_s, PERIOD_S)
-            self.manager.write(self.time_s, PERIOD_S)
-            self.time_s += PERIOD_S
+    def commands_after(self, ticks: int = 1) -> list[float]:
+        self.tick(ticks)
         return self.hardware.commands.tolist()
 
 
@@ -96,19 +84,19 @@ def bench() -> PidBench:
 @pytest.fixture
 def running(bench: PidBench) -> PidBench:
     bench.configure(set_current_state_as_first_setpoint=False)
-    bench.activate()
+    bench.switch("pid")
     bench.measure([0.0, 0.0])
     return bench
 
 
 def test_without_a_reference_it_commands_nothing(running: PidBench) -> None:
-    assert np.isnan(running.tick(3)).all()
+    assert np.isnan(running.commands_after(3)).all()
 
 
 def test_the_error_times_its_gain_is_commanded(running: PidBench) -> None:
     running.measure([0.5, 0.5])
     assert not running.pid.offer(DOFS, [1.0, 1.0])
-    assert running.tick() == [5.0, 10.0]
+    assert running.commands_after() == [5.0, 10.0]
 
 
 def test_the_terms_of_those_that_ask_for_it_are_published_at_any_time(running: PidBench) -> None:
@@ -117,7 +105,7 @@ def test_the_terms_of_those_that_ask_for_it_are_published_at_any_time(running: P
     running.tick()
     assert running.sink.terms == []
     running.change(**{"gains.j1.activate_state_publisher": True, "gains.j1.i": 4.0})
-    command = running.tick(2)
+    command = running.commands_after(2)
     (place, first), (_, last) = running.sink.terms
     assert (place, first.error, first.gains.p, first.period_s) == (1, 0.5, 20.0, PERIOD_S)
     assert last.integral == pytest.approx(2 * 4.0 * 0.5 * PERIOD_S)
@@ -135,23 +123,23 @@ def test_the_strategy_against_windup_may_change_at_any_time(running: PidBench) -
     running.tick(2)
     running.measure([1.5, 0.0])
     # Legacy would take seconds to unwind.
-    assert running.tick(10)[0] < 1.0
+    assert running.commands_after(10)[0] < 1.0
 
 
 def test_names_may_come_in_any_order_or_not_at_all(running: PidBench) -> None:
     assert not running.pid.offer(["j1", "j0"], [2.0, 1.0])
-    assert running.tick() == [10.0, 40.0]
+    assert running.commands_after() == [10.0, 40.0]
     assert not running.pid.offer([], [0.0, 1.0])
-    assert running.tick() == [0.0, 20.0]
+    assert running.commands_after() == [0.0, 20.0]
 
 
 def test_a_nan_leaves_a_reference_as_it_is(running: PidBench) -> None:
     running.pid.offer([], [1.0, nan])
-    command = running.tick()
+    command = running.commands_after()
     assert command[0] == 10.0
     assert np.isnan(command[1])
     running.pid.offer([], [nan, 1.0])
-    assert running.tick() == [10.0, 20.0]
+    assert running.commands_after() == [10.0, 20.0]
 
 
 @pytest.mark.parametrize(
@@ -172,7 +160,7 @@ def test_references_that_make_no_sense_are_refused(
     says: str,
 ) -> None:
     assert says in running.pid.offer(names, values, derivatives)
-    assert np.isnan(running.tick()).all()
+    assert np.isnan(running.commands_after()).all()
 
 
 def test_references_and_states_are_refused_while_it_is_not_configured(bench: PidBench) -> None:
@@ -187,11 +175,11 @@ def test_references_and_states_are_refused_while_it_is_not_configured(bench: Pid
 def test_it_holds_the_position_at_its_activation(bench: PidBench) -> None:
     bench.configure()
     bench.measure([0.5, -0.5])
-    bench.activate()
+    bench.switch("pid")
     assert bench.pid.references.tolist() == [0.5, -0.5]
-    assert bench.tick() == [0.0, 0.0]
+    assert bench.commands_after() == [0.0, 0.0]
     bench.measure([0.4, -0.5])
-    assert bench.tick() == pytest.approx([1.0, 0.0])
+    assert bench.commands_after() == pytest.approx([1.0, 0.0])
 
 
 @pytest.mark.parametrize(("saved", "then"), [(True, 1.02), (False, 0.02)])
@@ -200,20 +188,20 @@ def test_the_integral_grows_and_may_outlast_a_deactivation(
 ) -> None:
     gains = {"gains.j0.p": 0.0, "gains.j0.i": 2.0, "gains.j1.p": 0.0, "gains.j1.i": 2.0}
     bench.configure(**gains, **{"gains.j0.save_i_term": saved, "gains.j1.save_i_term": False})
-    bench.activate()
+    bench.switch("pid")
     bench.measure([0.0, 0.0])
     bench.pid.offer([], [1.0, 1.0])
-    assert bench.tick(50) == pytest.approx([1.0, 1.0])
-    bench.manager.switch_controller(SwitchRequest((), ("pid",)))
+    assert bench.commands_after(50) == pytest.approx([1.0, 1.0])
+    bench.switch("", "pid")
     assert bench.hardware.commands.tolist() == [0.0, 0.0]
-    bench.activate()
+    bench.switch("pid")
     bench.pid.offer([], [1.0, 1.0])
-    assert bench.tick() == pytest.approx([then, 0.02])
-    bench.manager.switch_controller(SwitchRequest((), ("pid",)))
+    assert bench.commands_after() == pytest.approx([then, 0.02])
+    bench.switch("", "pid")
     bench.configure(**gains)
-    bench.activate()
+    bench.switch("pid")
     bench.pid.offer([], [1.0, 1.0])
-    assert bench.tick() == pytest.approx([0.02, 0.02])
+    assert bench.commands_after() == pytest.approx([0.02, 0.02])
 
 
 @pytest.mark.parametrize(("antiwindup", "held"), [(True, 0.48), (False, 0.5)])
@@ -222,24 +210,24 @@ def test_the_integral_itself_can_be_clamped(bench: PidBench, antiwindup: bool, h
         **{"gains.j0.p": 0.0, "gains.j0.i": 2.0, "gains.j0.i_clamp_max": 0.5},
         **{"gains.j0.antiwindup": antiwindup, "gains.j1.p": 0.0},
     )
-    bench.activate()
+    bench.switch("pid")
     bench.measure([0.0, 0.0])
     bench.pid.offer([], [1.0, 0.0])
-    assert bench.tick(50) == pytest.approx([0.5, 0.0])
+    assert bench.commands_after(50) == pytest.approx([0.5, 0.0])
     # What had been wound up beyond the bound has to be unwound first.
     bench.pid.offer([], [-1.0, 0.0])
-    assert bench.tick() == pytest.approx([held, 0.0])
+    assert bench.commands_after() == pytest.approx([held, 0.0])
 
 
 def test_one_interface_is_differentiated(bench: PidBench) -> None:
     bench.configure(**{"gains.j0.p": 0.0, "gains.j1.p": 0.0, "gains.j0.d": 1.0})
-    bench.activate()
+    bench.switch("pid")
     bench.measure([0.0, 0.0])
     bench.pid.offer([], [1.0, 1.0])
     # Nothing to compare with yet.
-    assert bench.tick() == [0.0, 0.0]
+    assert bench.commands_after() == [0.0, 0.0]
     bench.measure([0.1, 0.1])
-    assert bench.tick() == pytest.approx([-10.0, 0.0])
+    assert bench.commands_after() == pytest.approx([-10.0, 0.0])
 
 
 def test_with_two_interfaces_the_second_is_the_derivative(bench: PidBench) -> None:
@@ -250,36 +238,36 @@ def test_with_two_interfaces_the_second_is_the_derivative(bench: PidBench) -> No
         "j0/velocity",
         "j1/velocity",
     )
-    bench.activate()
+    bench.switch("pid")
     bench.measure([0.0, 0.0], [0.5, 0.5])
     bench.pid.offer([], [1.0, 1.0], [2.0, 2.0])
-    assert bench.tick() == pytest.approx([10.0 + 3.0 * 1.5, 20.0])
+    assert bench.commands_after() == pytest.approx([10.0 + 3.0 * 1.5, 20.0])
 
 
 def test_the_error_is_the_shortest_rotation(bench: PidBench) -> None:
     bench.configure(**{"gains.j0.angle_wraparound": True})
-    bench.activate()
+    bench.switch("pid")
     bench.measure([3.0, 3.0])
     bench.pid.offer([], [-3.0, -3.0])
-    assert bench.tick() == pytest.approx([10.0 * (2.0 * pi - 6.0), -120.0])
+    assert bench.commands_after() == pytest.approx([10.0 * (2.0 * pi - 6.0), -120.0])
 
 
 def test_feed_forward_adds_the_reference_when_it_is_on(bench: PidBench) -> None:
     bench.configure(**{"gains.j0.feedforward_gain": 4.0})
-    bench.activate()
+    bench.switch("pid")
     bench.measure([1.0, 1.0])
     bench.pid.offer([], [1.0, 1.0])
-    assert bench.tick() == [0.0, 0.0]
+    assert bench.commands_after() == [0.0, 0.0]
     bench.pid.enable_feedforward(True)
-    assert bench.tick() == [4.0, 0.0]
+    assert bench.commands_after() == [4.0, 0.0]
 
 
 def test_the_output_is_clamped(bench: PidBench) -> None:
     bench.configure(**{"gains.j0.u_clamp_max": 1.5})
-    bench.activate()
+    bench.switch("pid")
     bench.measure([0.0, 0.0])
     bench.pid.offer([], [1.0, 1.0])
-    assert bench.tick() == [1.5, 20.0]
+    assert bench.commands_after() == [1.5, 20.0]
 
 
 def test_gains_can_change_while_it_runs(running: PidBench) -> None:
@@ -291,17 +279,17 @@ def test_gains_can_change_while_it_runs(running: PidBench) -> None:
         "gains.j0.p": 1.0,
     }
     running.pid.update_parameters(PidController.build_parameters(values))
-    assert running.tick() == [1.0, 0.0]
+    assert running.commands_after() == [1.0, 0.0]
 
 
 def test_states_may_come_by_topic(bench: PidBench) -> None:
     bench.configure(use_external_measured_states=True)
-    bench.activate()
+    bench.switch("pid")
     bench.measure([9.0, 9.0])
     bench.pid.offer([], [1.0, 1.0])
-    assert np.isnan(bench.tick()).all()
+    assert np.isnan(bench.commands_after()).all()
     assert not bench.pid.offer_measured(["j1", "j0"], [0.5, 0.0])
-    assert bench.tick() == [10.0, 10.0]
+    assert bench.commands_after() == [10.0, 10.0]
 
 
 def test_the_state_is_published(running: PidBench) -> None:
@@ -321,23 +309,23 @@ def test_behind_a_forward_command_controller(running: PidBench) -> None:
     joints = ("pid/j0", "pid/j1")
     running.manager.configure_controller("top", ForwardCommandParameters(joints, "position"))
     running.pid.offer([], [5.0, 5.0])
-    running.activate("top")
+    running.switch("top")
     assert running.pid.is_chained
     top.offer([1.0, 2.0])
     running.measure([0.0, 0.5])
-    assert running.tick() == [10.0, 30.0]
+    assert running.commands_after() == [10.0, 30.0]
     statuses = {s.name: s for s in running.manager.list_controllers()}
     assert list(statuses) == ["top", "pid"]
     assert statuses["pid"].reference_interfaces == ("j0/position", "j1/position")
     # Alone again, it goes on to where it was sent; what came by topic meanwhile is too old.
     running.pid.offer([], [5.0, 5.0])
-    running.manager.switch_controller(SwitchRequest((), ("top",)))
-    assert running.tick() == [10.0, 30.0]
+    running.switch("", "top")
+    assert running.commands_after() == [10.0, 30.0]
     assert running.pid.exported_states.tolist() == [0.0, 0.5]
 
 
 def test_behind_a_joint_trajectory_controller(running: PidBench) -> None:
-    running.manager.switch_controller(SwitchRequest((), ("pid",)))
+    running.switch("", "pid")
     running.measure([0.3, -0.4], [0.0, 0.0])
     leader = JointTrajectoryController(ControllerContext("jtc", 100))
     running.manager.load_controller(leader, "jtc")
@@ -350,12 +338,12 @@ def test_behind_a_joint_trajectory_controller(running: PidBench) -> None:
     running.manager.configure_controller(
         "jtc", JointTrajectoryController.build_parameters(parameters)
     )
-    running.activate("jtc pid")
+    running.switch("jtc pid")
     # It holds where the joints are.
-    assert running.tick(2) == pytest.approx([0.0, 0.0])
+    assert running.commands_after(2) == pytest.approx([0.0, 0.0])
     assert running.pid.references.tolist() == pytest.approx([0.3, -0.4])
     running.measure([0.2, -0.4])
-    assert running.tick() == pytest.approx([1.0, 0.0])
+    assert running.commands_after() == pytest.approx([1.0, 0.0])
 
 
 @pytest.mark.parametrize(
