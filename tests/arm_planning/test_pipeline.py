@@ -1,5 +1,6 @@
 """The steps from a request to a trajectory: their order, and each way in which they fail."""
 
+import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -153,6 +154,18 @@ def test_a_plan_leads_from_the_corrected_start_to_the_goal_with_the_remark(plann
     assert response.trajectory.positions[-1] == pytest.approx([1.0, 1.0])
     assert response.start == {"shoulder": 3.0, "elbow": 0.0}
     assert response.message.startswith("the start state is slightly outside")
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
+def test_a_speed_that_is_no_fraction_and_a_time_without_end_change_no_plan(
+    planner: Planner, value: float
+):
+    usual = planner.plan(PlanRequest("arm", GOAL)).trajectory
+    odd = PlanRequest("arm", GOAL, velocity_scaling=value, allowed_time_s=math.inf)
+    found = planner.plan(odd).trajectory
+    assert usual is not None
+    assert found is not None
+    assert found.times_s.tolist() == usual.times_s.tolist()
 
 
 @pytest.mark.parametrize(

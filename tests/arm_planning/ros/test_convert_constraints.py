@@ -101,6 +101,8 @@ def oriented(**fields: float | int) -> Constraints:
     ("message", "problem"),
     [
         (joint_goal({"elbow": math.nan}), "the constraint on joint 'elbow' is not finite"),
+        (pose_goal("tip", (math.nan, 0.0, 0.0)), "nan"),
+        (pose_goal("tip", (math.inf, 0.0, 0.0)), "inf"),
         (
             Constraints(
                 joint_constraints=[JointConstraint(joint_name="elbow", tolerance_above=-1.0)]
@@ -148,6 +150,12 @@ def test_a_request_has_moveits_defaults_and_the_nodes_seed():
     assert (request.allowed_time_s, request.attempts) == (1.0, 1)
     assert not request.path
     assert plan_request(MotionPlanRequest(), 0, frames(), print).goals == ()
+
+
+@pytest.mark.parametrize("time_s", [-1.0, math.nan])
+def test_a_planning_time_that_is_no_positive_number_stands_for_the_default(time_s):
+    message = plan_message("arm", joint_goal({"elbow": 1.0}), allowed_planning_time=time_s)
+    assert plan_request(message, 7, frames(), print).allowed_time_s == 1.0
 
 
 def test_the_tolerances_of_a_rotation_vector_are_about_the_axes_of_the_frame_that_is_named():

@@ -30,21 +30,6 @@ def test_all_of_it_can_live_in_a_namespace(run_manager: Any, control_of: Any, cl
     assert program.stop() == 0
 
 
-def test_hardware_that_fails_takes_its_controllers_down(run_manager: Any, control_of: Any) -> None:
-    program = run_manager(
-        "--start",
-        "jsb",
-        parameters={"/**/controller_manager": {"ros__parameters": {"jsb.type": BROADCASTER}}},
-        ros_arguments=("-r", "__ns:=/failing"),
-    )
-    control = control_of("/failing")
-    program.tell("fail read")
-    program.wait_for_line("read cycle resulted in an error: [ HardwareInterface ]")
-    control.wait_for_states(jsb="inactive")
-    (component,) = control.call("list_hardware_components").component
-    assert component.state.label == "unconfigured"
-
-
 @pytest.mark.parametrize("paused", [(), ("--paused",)])
 def test_it_ends_with_code_0(run_manager: Any, paused: tuple[str, ...]) -> None:
     program = run_manager(

@@ -275,18 +275,6 @@ def test_inactive_hardware_is_watched_but_not_commanded(control: Any, set_state:
         set_state("Lift", label="unconfigured")
 
 
-def test_a_command_shows_in_the_joint_states(control: Any, client: Any) -> None:
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
-    control.start("jsb", "arm")
-    states = client.subscribe(JointState, "/joint_states")
-    assert list(states.wait_for(1)[0].position) == [0.25, 0.25]
-    commands = client.publisher(Float64MultiArray, "/arm/commands")
-    commands.publish(Float64MultiArray(data=[1.0, -2.0]))
-    states.wait_until(lambda m: list(m[-1].position) == [1.0, -2.0], "the command")
-
-
 # Controllers
 
 

@@ -32,16 +32,6 @@ def test_it_configures_and_activates(control: Any, spawn_hardware: Any) -> None:
     assert state(control) == "active"
 
 
-def test_without_a_target_it_ends_with_code_2(spawn_hardware: Any) -> None:
-    output = spawn_hardware("HardwareInterface").fail(2)
-    assert "one of the arguments --activate --configure is required" in output
-
-
-def test_without_a_manager_it_gives_up_after_its_time(spawn_hardware: Any) -> None:
-    output = spawn_hardware("a", "--activate", "--controller-manager-timeout", "0.3", "-c", "m")
-    assert "Could not contact service /m/list_hardware_components within 0.3 s" in output.fail()
-
-
 def test_a_signal_ends_the_wait(spawn_hardware: Any) -> None:
     spawner = spawn_hardware("a", "--activate", "--ros-args", "-r", "__ns:=/far")
     spawner.wait_for_line("waiting for service /far/controller_manager/list_hardware_components")

@@ -91,10 +91,6 @@ def test_an_unknown_controller_ends_with_code_1(control: Any, spawn: Any) -> Non
     assert control.states() == {}
 
 
-def test_without_a_name_it_ends_with_code_2(spawn: Any) -> None:
-    assert "the following arguments are required: NAME" in spawn().fail(2)
-
-
 def test_without_a_manager_it_gives_up_after_its_time(spawn: Any) -> None:
     output = spawn("a", "-c", "/nobody", "--controller-manager-timeout", "0.3").fail()
     assert "Could not contact service /nobody/list_controllers within 0.3 s" in output

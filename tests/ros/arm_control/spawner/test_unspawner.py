@@ -54,7 +54,3 @@ def test_the_manager_is_looked_for_in_the_own_namespace_and_a_signal_ends_the_wa
 def test_a_manager_that_no_node_can_be_is_a_sentence(unspawn: Any) -> None:
     output = unspawn("a", "-c", "bad name!").fail()
     assert "no controller manager can be named '/bad name!': Invalid service name" in output
-
-
-def test_without_a_name_it_ends_with_code_2(unspawn: Any) -> None:
-    assert "the following arguments are required: NAME" in unspawn().fail(2)

@@ -72,14 +72,6 @@ def test_motions_of_a_group_become_one_trajectory_from_rest_to_rest(
     assert first == pytest.approx({name: given[name] for name in first}, abs=1e-6)
 
 
-def test_another_group_gets_a_trajectory_of_its_own(planned: Any, motion: Any, joints: Any):
-    gripper = motion({"gripper_controller": -0.3}, group_name="gripper")
-    response = planned(motion(joints(0.3)), gripper)
-    assert response.error_code.val == SUCCESS
-    names = [each.joint_trajectory.joint_names for each in response.planned_trajectories]
-    assert [len(each) for each in names] == [6, 1]
-
-
 def test_a_sequence_begins_at_the_start_state_of_its_first_motion(
     planned: Any, motion: Any, joints: Any
 ):
@@ -98,20 +90,13 @@ def test_an_empty_sequence_succeeds(planned: Any):
 @pytest.mark.parametrize(
     ("second", "code", "reason"),
     [
-        ({"radius": 0.01}, MoveItErrorCodes.INVALID_MOTION_PLAN, "last blending radius"),
         (
             {"start": {"link1_to_link2": 0.1}},
             MoveItErrorCodes.INVALID_ROBOT_STATE,
             "Only the first request of group 'arm' may have a start state",
         ),
         ({"pipeline_id": "ompl"}, MoveItErrorCodes.FAILURE, "motion 1 .* 'ompl'"),
-        ({"planner_id": "LINE"}, MoveItErrorCodes.PLANNING_FAILED, "motion 1 .* 'LINE'"),
         ({"group_name": "leg"}, MoveItErrorCodes.INVALID_GROUP_NAME, "no group 'leg'"),
-        (
-            {"max_velocity_scaling_factor": 0.0},
-            MoveItErrorCodes.INVALID_MOTION_PLAN,
-            "Velocity scaling not in range",
-        ),
     ],
 )
 def test_a_sequence_that_is_wrong_says_why(

@@ -121,15 +121,3 @@ def test_parallel_takes_exactly_one_position(
         manager.wait_for_line(
             f"Received action goal with wrong number of position values, expects 1, got {count}"
         )
-
-
-def test_a_client_that_dies_in_the_middle_of_a_goal_does_no_harm(
-    active: Any, grip: Any, send_and_die: Any, manager: Any
-) -> None:
-    from control_msgs.action import GripperCommand
-
-    goal = GripperCommand.Goal()
-    goal.command.position = BEYOND_ITS_LIMIT
-    send_and_die(GripperCommand, f"/{GRIPPER}/gripper_cmd", goal)
-    assert grip(-0.2).wait().status == SUCCEEDED
-    assert "callback failed" not in manager.output
