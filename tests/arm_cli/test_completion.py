@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import pytest
+from run_python import run_python
 
 from arm_cli.main import main
 
@@ -105,9 +106,7 @@ def test_tab_imports_only_what_the_typed_verb_needs():
     )
     line = "arm topic echo --onc"
     environment = {**os.environ, "COMP_LINE": line, "COMP_POINT": str(len(line))}
-    done = subprocess.run(
-        [sys.executable, "-c", code], env=environment, check=True, capture_output=True, text=True
-    )
+    done = run_python("-c", code, env=environment, check=True)
     imported = set(done.stdout.split())
     assert "arm_cli.topic.echo" in imported
     assert not {"rclpy", "launch_py.actions", "arm_cli.topic.measuring", "arm_cli.param"} & imported

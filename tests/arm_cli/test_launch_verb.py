@@ -1,9 +1,9 @@
 """`arm launch`: its default file, its errors, and its imports."""
 
 import subprocess
-import sys
 
 import pytest
+from run_python import run_python
 
 from arm_cli import launch
 from arm_cli.launch import name_launch_file
@@ -73,13 +73,7 @@ def test_without_the_interfaces_it_still_lists_arguments(launch_file, monkeypatc
 
 
 def test_the_launcher_imports_nothing_heavy(launch_file):
-    done = subprocess.run(
-        [sys.executable, "-m", "arm_cli", "launch", str(launch_file)],
-        capture_output=True,
-        text=True,
-        timeout=100,
-        check=False,
-    )
+    done = run_python("-m", "arm_cli", "launch", str(launch_file))
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[0].strip() == "imported:"
 
@@ -162,6 +156,6 @@ def test_the_launcher_reads_a_robot_without_numpy_lxml_and_rclpy():
         "try:\n    run()\nexcept SystemExit:\n    pass\n"
         "print(sorted({'lxml', 'numpy', 'rclpy', 'mujoco'} & sys.modules.keys()), file=sys.stderr)"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    done = run_python("-c", code)
     assert "robot_state_publisher" in done.stdout
     assert done.stderr.strip() == "[]"

@@ -8,6 +8,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from run_python import run_python
 
 from arm_cli.main import main
 from arm_cli.verb import run_reporting_errors
@@ -65,20 +66,12 @@ def test_help_imports_no_verb():
         "heavy = {'launch_py', 'rclpy', 'rich', 'yaml', 'numpy', 'asyncio'}; "
         "sys.exit(', '.join(heavy & sys.modules.keys()) or 0)"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=100, check=False
-    )
+    done = run_python("-c", code)
     assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_python_m_arm_cli_is_the_command():
-    done = subprocess.run(
-        [sys.executable, "-m", "arm_cli", "--version"],
-        capture_output=True,
-        text=True,
-        timeout=100,
-        check=False,
-    )
+    done = run_python("-m", "arm_cli", "--version")
     assert done.stdout.startswith("arm ")
 
 

@@ -1,9 +1,7 @@
 """The table of verbs: every one has a parser, and none imports rclpy to explain itself."""
 
-import subprocess
-import sys
-
 import pytest
+from run_python import run_python
 
 from arm_cli.main import main
 from arm_cli.verb import Verb, VerbFamily
@@ -37,9 +35,7 @@ def test_no_verb_imports_rclpy_for_its_help():
         "build(ARM.verbs)\n"
         "sys.exit(', '.join({'rclpy', 'numpy', 'yaml', 'rich'} & sys.modules.keys()) or 0)"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
-    )
+    done = run_python("-c", code)
     assert (done.returncode, done.stderr) == (0, "")
 
 

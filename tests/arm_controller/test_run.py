@@ -2,10 +2,10 @@
 
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from run_python import run_python
 
 pytestmark = pytest.mark.ros
 
@@ -27,13 +27,11 @@ sys.exit(run(make, work))
 
 
 def ended(code: str, log_folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-c", PROGRAM.format(code=code), *arguments],
+    return run_python(
+        "-c",
+        PROGRAM.format(code=code),
+        *arguments,
         env={**os.environ, "ROS_LOG_DIR": str(log_folder)},
-        capture_output=True,
-        text=True,
-        timeout=60.0,
-        check=False,
     )
 
 

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import pytest
+from run_python import run_python
 
 pytestmark = pytest.mark.ros
 
@@ -67,13 +68,7 @@ sys.exit(run_process(application, ["program"]))
 def test_a_terminal_that_goes_ends_the_process_unless_it_runs_under_nohup(
     inherited: str, then: str
 ):
-    run = subprocess.run(
-        [sys.executable, "-c", HUNG_UP, inherited],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=True,
-    )
+    run = run_python("-c", HUNG_UP, inherited, check=True)
     assert run.stdout.split("\n")[0] == then
 
 
@@ -107,9 +102,7 @@ sys.exit(run_process(application, ["program"]))
 
 
 def test_a_callback_that_does_not_end_is_left_alone():
-    run = subprocess.run(
-        [sys.executable, "-c", ENDLESS], capture_output=True, text=True, timeout=60, check=False
-    )
+    run = run_python("-c", ENDLESS)
     assert run.returncode == 7, run.stderr
     assert (
         "a callback in thread 'executor' is still running after 5 s and is abandoned" in run.stderr
@@ -150,13 +143,7 @@ sys.exit(code)
 
 @pytest.mark.parametrize(("application", "code"), [("made", 0), ("refused", 1)])
 def test_nodes_and_their_participant_end_before_the_process(application: str, code: int):
-    run = subprocess.run(
-        [sys.executable, "-c", LEFT_ALONE, application],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    run = run_python("-c", LEFT_ALONE, application)
     assert run.returncode == code, run.stderr
     threads = run.stdout.split("\n")
     assert any("python" in name for name in threads)
@@ -181,13 +168,7 @@ def test_a_parameter_file_that_cannot_be_read_is_a_sentence(tmp_path, kind, prob
     file = tmp_path / "p.yaml"
     if kind == "fifo":
         os.mkfifo(file)
-    run = subprocess.run(
-        [sys.executable, "-c", PLAIN, "--ros-args", "--params-file", str(file)],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    run = run_python("-c", PLAIN, "--ros-args", "--params-file", str(file))
     assert (run.returncode, run.stderr) == (2, f"cannot start ROS: cannot read {file}: {problem}\n")
 
 
@@ -221,13 +202,7 @@ sys.exit(run_process(application, ["program", *sys.argv[1:]], (ValueError,)))
 def test_a_node_that_cannot_be_made_says_so_under_its_own_name(
     arguments: tuple[str, ...], name: str
 ):
-    run = subprocess.run(
-        [sys.executable, "-c", REFUSING, *arguments],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    run = run_python("-c", REFUSING, *arguments)
     assert run.returncode == 1
     assert f"[{name}]: no such robot" in run.stderr
     assert "Traceback" not in run.stderr

@@ -1,10 +1,9 @@
 """The distribution is known by the version of rclpy."""
 
 import os
-import subprocess
-import sys
 
 import pytest
+from run_python import run_python
 
 
 @pytest.mark.parametrize(
@@ -16,5 +15,5 @@ def test_a_version_of_rclpy_is_a_distribution(tmp_path, version, name):
     (share / "package.xml").write_text(f"<package><version>{version}</version></package>")
     code = "from arm_node.ros_distribution import ros_distribution as d; print(d())"
     environ = {**os.environ, "AMENT_PREFIX_PATH": str(tmp_path)}
-    done = subprocess.run([sys.executable, "-c", code], env=environ, capture_output=True, text=True)
+    done = run_python("-c", code, env=environ)
     assert done.stdout.strip() == name, done.stderr

@@ -1,7 +1,6 @@
 """What reading plans and scenes does not import."""
 
-import subprocess
-import sys
+from run_python import run_python
 
 SCRIPT = """
 import sys
@@ -13,5 +12,5 @@ print(Planner.__name__)
 
 
 def test_a_program_that_only_reads_scenes_does_not_import_mujoco():
-    done = subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True)
+    done = run_python("-c", SCRIPT)
     assert (done.stdout, done.stderr) == ("Planner\n", "")

@@ -1,12 +1,11 @@
 """The pytest plugin, in pytest runs of its own."""
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import cv2
 import pytest
+from run_python import run_python
 
 # Each run within this process forgets the modules that it was the first to import, and native ones
 # cannot be imported twice: they are all imported here.
@@ -42,7 +41,7 @@ def run(pytester: pytest.Pytester, test: str, *arguments: str) -> pytest.RunResu
 
 
 def test_a_run_that_does_not_use_it_imports_nothing_heavy():
-    done = subprocess.run([sys.executable, "-c", PLUGIN_ALONE], capture_output=True, text=True)
+    done = run_python("-c", PLUGIN_ALONE)
     assert done.stdout == "[]\n", done.stderr
 
 

@@ -3,12 +3,11 @@
 import os
 import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 import yaml
+from run_python import run_python
 
 TEMPLATE = Path(__file__).parents[2] / "examples" / "robot_tests"
 INSTALL, RUN = re.findall(r"^    (.+)$", (TEMPLATE / "README.md").read_text(), re.MULTILINE)
@@ -25,14 +24,16 @@ def copied(tmp_path: Path) -> Path:
 
 def run_tests(folder: Path, file: str) -> str:
     environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", file],
-        cwd=folder,
+    done = run_python(
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        file,
         env={**environment, "PYTHONPATH": str(folder)},
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_S,
-        check=False,
+        cwd=folder,
+        timeout_s=TIMEOUT_S,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout

@@ -17,6 +17,7 @@ from typing import TypeVar
 import psutil
 import pytest
 from programs import Program
+from run_python import run_python
 
 from arm_node.ros_domain import domain_of_its_own
 from launch_py.launch_description import LaunchDescription, expand_description
@@ -162,14 +163,8 @@ def run_launch_py(launch_environment, tmp_path):
     """Run the launcher to its end and return its output."""
 
     def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, "-m", "launch_py", *arguments],
-            capture_output=True,
-            text=True,
-            env=launch_environment,
-            cwd=tmp_path,
-            timeout=TIMEOUT_S,
-            check=False,
+        return run_python(
+            "-m", "launch_py", *arguments, env=launch_environment, cwd=tmp_path, timeout_s=TIMEOUT_S
         )
 
     return run

@@ -1,11 +1,11 @@
 """Launch files of ROS 2 import launch_py's names, but only while they are read."""
 
 import os
-import subprocess
 import sys
 import textwrap
 
 import pytest
+from run_python import run_python
 
 import launch_py
 from launch_py.errors import LaunchFileError
@@ -156,13 +156,7 @@ def test_an_installed_launch_takes_precedence(tmp_path, ros_file):
     code = (
         f"from launch_py.launch_description_sources import *; read_launch_file(Path({str(path)!r}))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        check=False,
-        env={**os.environ, "PYTHONPATH": str(package.parent)},
-    )
+    done = run_python("-c", code, env={**os.environ, "PYTHONPATH": str(package.parent)})
     assert "imports the `launch` of an installed ROS 2: start it with `ros2 launch`" in done.stderr
 
 
@@ -172,13 +166,7 @@ def test_a_folder_named_launch_is_not_an_installed_launch(tmp_path, ros_file):
     code = (
         f"from launch_py.launch_description_sources import *; read_launch_file(Path({str(path)!r}))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        check=False,
-        env={**os.environ, "PYTHONPATH": str(tmp_path / "site")},
-    )
+    done = run_python("-c", code, env={**os.environ, "PYTHONPATH": str(tmp_path / "site")})
     assert (done.returncode, done.stderr) == (0, "")
 
 

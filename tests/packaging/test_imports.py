@@ -2,7 +2,6 @@
 
 import ast
 import json
-import subprocess
 import sys
 import tomllib
 from collections.abc import Iterable
@@ -14,6 +13,7 @@ import pytest
 from declared_dependencies import DEPENDENCIES, WHEELS
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+from run_python import run_python
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
@@ -203,12 +203,8 @@ def test_all_modules_and_all_mesh_files_do_without_what_is_not_declared(hidden_m
     for suffix, (mesh, *_) in meshes().items():
         (tmp_path / f"mesh{suffix}").write_bytes(mesh)
     packages = [package.name for package in PRODUCT]
-    done = subprocess.run(
-        [sys.executable, RUN, json.dumps(hidden_modules), json.dumps(packages), tmp_path],
-        capture_output=True,
-        text=True,
-        timeout=500.0,
-        check=False,
+    done = run_python(
+        RUN, json.dumps(hidden_modules), json.dumps(packages), tmp_path, timeout_s=500.0
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == sorted(f"mesh{suffix}" for suffix in meshes())

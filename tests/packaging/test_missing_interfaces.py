@@ -2,12 +2,12 @@
 
 import os
 import subprocess
-import sys
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from run_python import run_python
 
 from arm_node.environment import INTERFACE_PACKAGES, PLANNING_PACKAGES
 
@@ -60,15 +60,12 @@ def run_without_interfaces(tmp_path: Path) -> Callable[..., subprocess.Completed
             f"import sys; from {module} import {function}; "
             f"sys.argv[0] = {name!r}; sys.exit({function}())"
         )
-        return subprocess.run(
-            [sys.executable, "-c", start, *arguments],
+        return run_python(
+            "-c",
+            start,
+            *arguments,
             env={**os.environ, "PYTHONPATH": str(tmp_path), "ROS_LOG_DIR": str(tmp_path / "log")},
             cwd=tmp_path,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            timeout=60.0,
-            check=False,
         )
 
     return run

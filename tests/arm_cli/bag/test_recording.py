@@ -1,7 +1,5 @@
 """A running recording: a slow or full disk, lost messages, and quality of service."""
 
-import subprocess
-import sys
 import threading
 from random import Random
 
@@ -9,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
+from run_python import run_python
 
 from arm_cli.bag.ros_player import ReadAhead
 from arm_cli.bag.ros_recorder import LossCounter, Recording
@@ -145,9 +144,7 @@ try:
 except BagError as error:
     print(error)
 """
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=True
-    )
+    done = run_python("-c", code, cwd=tmp_path, check=True)
     assert (done.stdout, done.stderr) == ("cannot write bag: File too large\n", "")
     with BagReader(tmp_path / "bag") as reader:
         assert reader.metadata.message_count == 2

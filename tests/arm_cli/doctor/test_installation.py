@@ -3,11 +3,11 @@
 import fcntl
 import os
 import subprocess
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from run_python import run_python
 
 from arm_cli.doctor.diagnosis import Severity
 from arm_cli.doctor.installation import (
@@ -262,13 +262,8 @@ def test_little_shared_memory(tmp_path, monkeypatch, free_bytes, severity, sente
 
 
 def test_the_command_prints_findings_fixes_and_an_exit_code(environ):
-    done = subprocess.run(
-        [sys.executable, "-m", "arm_cli", "doctor"],
-        env={**environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
+    done = run_python(
+        "-m", "arm_cli", "doctor", env={**environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}
     )
     assert done.returncode == 1, done.stderr
     assert "error    discovery: ROS_AUTOMATIC_DISCOVERY_RANGE is OFF" in done.stdout
@@ -286,14 +281,7 @@ def test_the_command_prints_findings_fixes_and_an_exit_code(environ):
     ],
 )
 def test_what_keeps_ros_from_starting_has_a_fix(environ, variable, value, fix):
-    done = subprocess.run(
-        [sys.executable, "-m", "arm_cli", "doctor"],
-        env={**environ, variable: value},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
+    done = run_python("-m", "arm_cli", "doctor", env={**environ, variable: value})
     assert done.returncode == 1, done.stderr
     assert "error    simulation: cannot start ROS: " in done.stdout
     assert f"-> {fix}\n" in done.stdout

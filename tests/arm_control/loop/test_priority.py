@@ -2,10 +2,9 @@
 
 import logging
 import os
-import subprocess
-import sys
 
 import pytest
+from run_python import run_python
 
 from arm_control.loop.priority import OTHERS_NICENESS, LoopPriority
 
@@ -156,7 +155,5 @@ changed = [os.getpriority(os.PRIO_PROCESS, thread.native_id) - before for thread
 print(changed, os.getpriority(os.PRIO_PROCESS, 0) - before)
 end.set()
 """
-    run = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60.0, check=True
-    )
+    run = run_python("-c", program, check=True)
     assert run.stdout == "[3, 3] 0\n"

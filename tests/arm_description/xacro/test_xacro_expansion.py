@@ -1,11 +1,11 @@
 """xacro to URDF: arguments, $(find) without any environment, and errors as sentences."""
 
 import os
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from run_python import run_python
 
 from arm_description import XacroError, expand_xacro, parse_urdf
 from arm_description.xacro.expansion import expand_xacro_file
@@ -195,7 +195,7 @@ def test_an_error_does_not_spoil_the_next_expansion(tmp_path):
 
 def test_neither_xacro_nor_ros_is_imported_with_the_package():
     code = "import sys, arm_description; print([m for m in ('xacro', 'rclpy') if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = run_python("-c", code, check=True)
     assert done.stdout == "[]\n"
 
 

@@ -1,11 +1,10 @@
 """Threads that are made while answers are held back run like all others afterwards."""
 
 import os
-import subprocess
-import sys
 import threading
 
 import pytest
+from run_python import run_python
 
 from arm_node.workarounds import discovery
 from arm_node.workarounds.discovery import first_node, prompt_discovery
@@ -79,9 +78,7 @@ os._exit(0)
 
 
 def test_a_busy_thread_does_not_hold_up_its_maker():
-    done = subprocess.run(
-        [sys.executable, "-c", BUSY_THREAD], capture_output=True, text=True, timeout=60, check=False
-    )
+    done = run_python("-c", BUSY_THREAD)
     assert done.stdout == "went on", done.stderr
 
 

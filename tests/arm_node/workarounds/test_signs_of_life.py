@@ -2,10 +2,9 @@
 
 import os
 import struct
-import subprocess
-import sys
 
 import pytest
+from run_python import run_python
 
 from arm_node.workarounds.ports import PAUSE_MS, shorten_liveness_pause
 
@@ -108,9 +107,7 @@ rclpy.shutdown()
 
 @pytest.mark.ros
 def test_fast_dds_has_the_numbers_where_they_are_looked_for():
-    done = subprocess.run(
-        [sys.executable, "-c", NUMBERS], capture_output=True, text=True, timeout=120, check=True
-    )
+    done = run_python("-c", NUMBERS, check=True)
     numbers = done.stdout.splitlines()
     assert len(numbers) >= 2
     assert set(numbers) == {f"1000 {PAUSE_MS}"}

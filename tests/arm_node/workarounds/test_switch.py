@@ -1,10 +1,9 @@
 """Workarounds are on for the versions that they were made for, and off by hand."""
 
 import os
-import subprocess
-import sys
 
 import pytest
+from run_python import run_python
 
 from arm_node.workarounds.switch import LIBRARIES, VARIABLE, Library, switched_off
 
@@ -17,12 +16,10 @@ def manifest(folder, package, version):
 
 def asked(code: str, **variables: str) -> str:
     """The output of a process that starts with these variables."""
-    done = subprocess.run(
-        [sys.executable, "-c", f"from arm_node.workarounds.switch import *; {code}"],
+    done = run_python(
+        "-c",
+        f"from arm_node.workarounds.switch import *; {code}",
         env={**os.environ, **variables},
-        capture_output=True,
-        text=True,
-        timeout=60,
         check=True,
     )
     return done.stdout.strip()
@@ -95,12 +92,5 @@ print(remove_torn_ports(sys.argv[1]))
 
 @pytest.mark.parametrize(("without", "removed"), [("", "['fastrtps_port7411']"), ("all", "[]")])
 def test_what_is_off_does_nothing(tmp_path, without, removed):
-    done = subprocess.run(
-        [sys.executable, "-c", TORN, str(tmp_path)],
-        env={**os.environ, VARIABLE: without},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=True,
-    )
+    done = run_python("-c", TORN, str(tmp_path), env={**os.environ, VARIABLE: without}, check=True)
     assert done.stdout.strip() == removed

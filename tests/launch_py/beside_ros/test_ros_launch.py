@@ -1,11 +1,11 @@
 """This package's launch files, read by ROS 2's own `launch`: here its double."""
 
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from ament_index_python.packages import get_package_share_directory
+from run_python import run_python
 
 DOUBLE = Path(__file__).with_name("launch_double.py").read_text()
 OURS = """
@@ -54,13 +54,10 @@ def ros2_launch(tmp_path, launch_environment):
     (package / "__init__.py").write_text(DOUBLE)
 
     def run(code: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, "-c", f"import launch, sys\nsys.exit(launch.{code})"],
-            capture_output=True,
-            text=True,
-            check=False,
+        return run_python(
+            "-c",
+            f"import launch, sys\nsys.exit(launch.{code})",
             env={**launch_environment, "PYTHONPATH": str(package.parent)},
-            timeout=60,
         )
 
     return run

@@ -3,12 +3,11 @@
 import json
 import math
 import signal
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 import yaml
+from run_python import run_python
 
 from launch_py import LaunchContext
 from launch_py.errors import NodeParameterError
@@ -215,13 +214,7 @@ def test_a_real_node_reads_the_file(tmp_path, context):
     )
     path = tmp_path / "params.yaml"
     path.write_text(parameter_file_text("/a/n", values), encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "-c", PRINT_PARAMETERS, "--ros-args", "--params-file", str(path)],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = run_python("-c", PRINT_PARAMETERS, "--ros-args", "--params-file", str(path))
     assert done.returncode == 0, done.stderr
     # Fast DDS may print errors first, about shared memory of other programs that were killed.
     read = json.loads(done.stdout.splitlines()[-1])

@@ -1,8 +1,7 @@
-import subprocess
-import sys
 import time
 
 import pytest
+from run_python import run_python
 
 CHILDREN = """
 import os, signal, subprocess
@@ -22,9 +21,7 @@ print("reaped", linux.child_has_ended())
 
 
 def test_a_stopped_child_has_not_ended_and_an_ended_child_stays_to_be_reaped():
-    answers = subprocess.run(
-        [sys.executable, "-c", CHILDREN], capture_output=True, text=True, check=True, timeout=60
-    ).stdout.splitlines()
+    answers = run_python("-c", CHILDREN, check=True).stdout.splitlines()
     assert answers == ["without children False", "stopped False", "ended True True", "reaped False"]
 
 
@@ -48,12 +45,7 @@ for child in own:
 
 
 def test_orphans_are_told_from_this_process_s_own_children():
-    done = subprocess.run(
-        [sys.executable, "-c", ADOPTED],
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
+    done = run_python("-c", ADOPTED)
     assert done.stdout.split() == ["True"] * 3, done.stderr
 
 
@@ -69,9 +61,7 @@ print(entered_s, linux.start_of_program(entered_s))
 @pytest.mark.parametrize("longest_s", [1000.0, 0.0])
 def test_a_program_started_with_its_process_unless_it_was_exec_d(longest_s):
     before_s = time.monotonic()
-    answer = subprocess.run(
-        [sys.executable, "-c", START, str(longest_s)], capture_output=True, text=True, timeout=60
-    ).stdout
+    answer = run_python("-c", START, str(longest_s)).stdout
     entered_s, start_s = map(float, answer.split())
     if longest_s:
         # The kernel reports the start of a process in steps of 10 ms.

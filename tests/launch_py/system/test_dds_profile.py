@@ -1,12 +1,12 @@
 """The shipped Fast DDS profiles: valid, given to the Fast DDS in use, loaded without complaint."""
 
 import os
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from lxml import etree  # pyright: ignore[reportAttributeAccessIssue]
+from run_python import run_python
 
 from launch_py.system.dds_profile import keep_to_loopback, profile_variables, shipped_profile
 from launch_py.system.packages import Packages
@@ -176,14 +176,7 @@ def test_no_participant_is_considered_dead_sooner_than_by_default(name):
 @pytest.mark.ros
 @pytest.mark.parametrize("name", with_twins(IN_USE))
 def test_a_profile_is_loaded_without_complaint(name):
-    done = subprocess.run(
-        [sys.executable, "-c", TALK],
-        env={**os.environ, VARIABLE: str(profile_path(name))},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = run_python("-c", TALK, env={**os.environ, VARIABLE: str(profile_path(name))})
     # Errors about shared memory of killed programs are allowed, errors about the profile are not.
     said = (done.stdout + done.stderr).splitlines()
     assert done.returncode == 0
@@ -216,16 +209,14 @@ def contents(tree) -> list[tuple[str, str]]:
 @pytest.mark.parametrize("name", IN_USE)
 @pytest.mark.workaround("local_profile")
 def test_a_process_limited_to_this_host_sends_everything_once(name):
-    done = subprocess.run(
-        [sys.executable, "-c", SEGMENTS],
+    done = run_python(
+        "-c",
+        SEGMENTS,
         env={
             **os.environ,
             VARIABLE: str(profile_path(name)),
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         },
-        capture_output=True,
-        text=True,
-        timeout=60,
         check=True,
     )
     assert done.stdout.splitlines()[-1] == "1"
