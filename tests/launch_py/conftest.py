@@ -163,9 +163,7 @@ def run_launch_py(launch_environment, tmp_path):
     """Run the launcher to its end and return its output."""
 
     def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-        return run_python(
-            "-m", "launch_py", *arguments, env=launch_environment, cwd=tmp_path, timeout_s=TIMEOUT_S
-        )
+        return run_python("-m", "launch_py", *arguments, env=launch_environment, cwd=tmp_path)
 
     return run
 

@@ -14,6 +14,7 @@ import mujoco
 import numpy as np
 import psutil
 import pytest
+from run_python import run_python
 
 from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.camera.process import CameraProcess
@@ -413,13 +414,7 @@ def test_the_camera_process_ends_with_a_killed_simulation():
     ],
 )
 def test_a_camera_process_started_by_hand_explains_why_it_does_not_run(arguments, said):
-    run = subprocess.run(
-        [sys.executable, "-m", "arm_gazebo.camera_node", *arguments],
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
+    run = run_python("-m", "arm_gazebo.camera_node", *arguments)
     assert run.returncode == 2
     assert said in run.stderr
     assert "Traceback" not in run.stderr

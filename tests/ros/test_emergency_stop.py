@@ -1,11 +1,10 @@
 """Two robots in one world, in another process, are stopped by a service, a topic and a verb."""
 
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
 import pytest
+from run_python import run_python
 
 from arm_cli.doctor.verb import examine_running
 from arm_cli.ros.connection import connect
@@ -183,13 +182,7 @@ def test_all_stop_by_the_topic_and_are_released_by_the_verb(arms, client, latche
     stop.publish(Bool(data=False))
     assert arms.is_at_rest("right")
     assert told.messages[-1].data
-    out = subprocess.run(
-        [sys.executable, "-m", "arm_cli", "stop", "--release"],
-        capture_output=True,
-        text=True,
-        timeout=START_TIMEOUT_S,
-        check=True,
-    ).stdout
+    out = run_python("-m", "arm_cli", "stop", "--release", check=True).stdout
     # Each service is called as soon as it is found, in whichever order that is.
     answers = dict(line.split(": ") for line in out.splitlines())
     assert answers
@@ -201,11 +194,5 @@ def test_all_stop_by_the_topic_and_are_released_by_the_verb(arms, client, latche
 
 def test_the_verb_stops_one_robot(arms):
     for words, answer in (([], "stopped"), (["--release"], "released")):
-        out = subprocess.run(
-            [sys.executable, "-m", "arm_cli", "stop", "-n", "left", *words],
-            capture_output=True,
-            text=True,
-            timeout=START_TIMEOUT_S,
-            check=True,
-        ).stdout
+        out = run_python("-m", "arm_cli", "stop", "-n", "left", *words, check=True).stdout
         assert out == f"/left/emergency_stop: {answer}\n"

@@ -3,15 +3,13 @@
 import os
 import re
 import signal
-import subprocess
-import sys
 
 import pytest
+from run_python import run_python
 
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 
 WORLDS = 4
-TIMEOUT_S = 60.0
 SMALLEST = ("camera:=none", "controller_node:=false", "use_robot_state_pub:=false")
 
 
@@ -46,13 +44,8 @@ def test_worlds_side_by_side_do_not_hear_each_other(launch, client_in):
     for client in clients:
         assert client.node.count_publishers("/joint_states") == 1
         assert client.node.count_subscribers(topic) == 1
-    nodes = subprocess.run(
-        [sys.executable, "-m", "arm_cli", "node", "list"],
-        env={**os.environ, "ROS_DOMAIN_ID": str(domains[0])},
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_S,
-    )
+    environment = {**os.environ, "ROS_DOMAIN_ID": str(domains[0])}
+    nodes = run_python("-m", "arm_cli", "node", "list", env=environment)
     assert nodes.stdout.splitlines().count("/controller_manager") == 1, nodes.stdout
     # Nothing was said of a second node of a name, which would stop the later launch.
     for launched in worlds:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from run_python import run_python
 
 pytestmark = pytest.mark.ros
 
@@ -68,13 +69,7 @@ def start(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[], Pat
 
 def partner_until(last: int) -> list[tuple[int, tuple[str, ...]]]:
     """Run a partner; return the control periods that it saw, each with the joints' positions."""
-    out = subprocess.run(
-        [sys.executable, str(PARTNER), str(last)],
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_S,
-        check=True,
-    ).stdout
+    out = run_python(str(PARTNER), str(last), check=True).stdout
     # Fast DDS prints its complaints to stdout, on a busy machine.
     lines = [line.split() for line in out.splitlines() if line[:1].isdigit()]
     return [(int(period), tuple(positions)) for period, *positions in lines]

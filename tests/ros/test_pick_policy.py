@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from run_python import run_python
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pick_policy"
 TIMEOUT_S = 250.0
@@ -21,12 +22,8 @@ def test_the_policy_lifts_cylinders_over_ros(launch):
     spawn = ["run", "controller_manager", "spawner", "joint_state_broadcaster"]
     parameters = ["pick_policy_controller", "--param-file", str(EXAMPLE / "controllers.yaml")]
     subprocess.run([sys.executable, "-m", "arm_cli", *spawn, *parameters], check=True)
-    done = subprocess.run(
-        [sys.executable, str(EXAMPLE / "pick_node.py"), "--picks", "2", "--seed", "5"],
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_S,
-        check=False,
+    done = run_python(
+        str(EXAMPLE / "pick_node.py"), "--picks", "2", "--seed", "5", timeout_s=TIMEOUT_S
     )
     # How often it succeeds is tested without ROS.
     said = re.search(r"(\d+) of 2 picks lifted the cylinder", done.stdout)

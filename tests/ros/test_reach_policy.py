@@ -1,11 +1,10 @@
 """The learned policy drives the real launch over ROS."""
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from run_python import run_python
 
 NODE = Path(__file__).parents[2] / "examples" / "reach_policy" / "drive_node.py"
 TIMEOUT_S = 150.0
@@ -17,13 +16,7 @@ def test_the_policy_reaches_random_goals_over_ros(launch):
     # At half speed, so that a busy machine does not miss a goal.
     launched = launch("camera:=none", "real_time_factor:=0.5")
     launched.wait_until_ready()
-    done = subprocess.run(
-        [sys.executable, str(NODE), "--goals", "4", "--seed", "5"],
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_S,
-        check=False,
-    )
+    done = run_python(str(NODE), "--goals", "4", "--seed", "5", timeout_s=TIMEOUT_S)
     # How often it succeeds is tested without ROS.
     said = re.search(r"(\d+) of 4 goals reached", done.stdout)
     assert said, done.stdout + done.stderr

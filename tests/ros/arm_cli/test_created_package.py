@@ -1,11 +1,11 @@
 """The test of a package from `arm pkg create`, installed as by colcon, passes."""
 
 import os
-import subprocess
 import sys
 import sysconfig
 
 import pytest
+from run_python import run_python
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -14,15 +14,8 @@ TIMEOUT_S = 150.0
 
 def test_a_created_package_s_own_test_passes(tmp_path):
     def run(*command: str, folder, **environment: str) -> str:
-        done = subprocess.run(
-            [sys.executable, *command],
-            cwd=folder,
-            env={**os.environ, **environment},
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            timeout=TIMEOUT_S,
-            check=False,
+        done = run_python(
+            *command, env={**os.environ, **environment}, cwd=folder, timeout_s=TIMEOUT_S
         )
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout

@@ -1,12 +1,11 @@
 """A simulation in lock-step repeats to the last bit while move_group plans and moves the arm."""
 
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from programs import Program
+from run_python import run_python
 
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
@@ -25,13 +24,7 @@ def what_the_partner_saw(launch: Callable[..., Program], recording: Path) -> lis
     """Return its lines, each cut into words."""
     program = launch("mycobot", "planning:=true", f"record_run:={recording}", *SETTINGS)
     program.wait_until_ready()
-    partner = subprocess.run(
-        [sys.executable, str(PARTNER), str(LAST)],
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_S,
-        check=True,
-    )
+    partner = run_python(str(PARTNER), str(LAST), check=True, timeout_s=TIMEOUT_S)
     program.close()
     # Fast DDS prints its complaints to stdout, on a busy machine.
     lines = [line.split() for line in partner.stdout.splitlines()]

@@ -1,7 +1,5 @@
 """The service /get_planning_scene_mycobot, and mtc_node, which picks up what it returns."""
 
-import subprocess
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from math import dist, inf
@@ -10,6 +8,7 @@ from typing import Any
 import pytest
 from programs import Program
 from robots import MYCOBOT_ARM
+from run_python import run_python
 
 pytestmark = pytest.mark.ros
 
@@ -198,12 +197,8 @@ def test_what_cannot_be_found_is_not_a_success_and_the_log_says_why(
 def test_mtc_node_puts_down_elsewhere_what_the_camera_sees(server, client_for_file):
     from simulation_interfaces.srv import GetEntityState
 
-    done = subprocess.run(
-        [sys.executable, "-m", "arm_cli", "launch", PACKAGE, LAUNCH_FILE, "execute:=true"],
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_S,
-        check=False,
+    done = run_python(
+        "-m", "arm_cli", "launch", PACKAGE, LAUNCH_FILE, "execute:=true", timeout_s=TIMEOUT_S
     )
     said = done.stdout + done.stderr
     assert done.returncode == 0, said
