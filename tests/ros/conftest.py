@@ -7,6 +7,7 @@ import os
 import sys
 import threading
 import time
+from array import array
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -206,7 +207,11 @@ class Client:
         return publisher
 
     def call(self, service_type: type, name: str, request: object, timeout_s: float = 30.0):
-        """Call a service once it is available; return its answer.
+        """Call a service once it is available; return its answer."""
+        return self.result_of(self.ask(service_type, name, request, timeout_s), name, timeout_s)
+
+    def ask(self, service_type: type, name: str, request: object, timeout_s: float = 30.0):
+        """Call a service once it is available; return the future of its answer.
 
         It must be discovered only once: the next call of the service has the same client.
         """
@@ -220,7 +225,32 @@ class Client:
         if ends != self._known.get(client):
             self.be_known_to_server(client.service_name)
             self._known[client] = ends
-        return self.result_of(client.call_async(request), name, timeout_s)
+        return client.call_async(request)
+
+    def set_parameters(self, node: str, **values: object) -> str:
+        """Set parameters of a node, all or none; '__' in a name stands for a dot.
+
+        Returns:
+            why they were refused, "" if they are set.
+        """
+        from rcl_interfaces.srv import SetParametersAtomically as Service
+        from rclpy.parameter import Parameter
+
+        named = [Parameter(name.replace("__", "."), value=v) for name, v in values.items()]
+        request = Service.Request(parameters=[each.to_parameter_msg() for each in named])
+        result = self.call(Service, f"{node}/set_parameters_atomically", request).result
+        assert result.successful == (not result.reason), result
+        return result.reason
+
+    def get_parameter(self, node: str, name: str) -> Any:
+        """Return a parameter of a node, None where it has no such one."""
+        from rcl_interfaces.srv import GetParameters
+        from rclpy.parameter import parameter_value_to_python
+
+        request = GetParameters.Request(names=[name])
+        (message,) = self.call(GetParameters, f"{node}/get_parameters", request).values
+        value = parameter_value_to_python(message)
+        return value.tolist() if isinstance(value, array) else value
 
     def _ends_of(self, client: Any) -> set[object]:
         """Return all that a service's server must have discovered, and what that server is."""

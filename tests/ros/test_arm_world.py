@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from simulated import PAUSED, PLAYING, Simulated
 
 pytestmark = pytest.mark.ros
 
@@ -71,16 +72,11 @@ def test_what_the_node_refuses_ends_the_launch_with_its_sentence(launch):
 
 def test_a_paused_start_waits_for_play(launch, client):
     from rosgraph_msgs.msg import Clock
-    from simulation_interfaces.msg import SimulationState
-    from simulation_interfaces.srv import GetSimulationState, SetSimulationState
 
     clock = client.subscribe(Clock, "/clock")
     launch("arm_gazebo", "arm_world.launch.py", "camera:=none", "paused:=true").wait_until_ready()
-    answer = client.call(GetSimulationState, "/get_simulation_state", GetSimulationState.Request())
-    assert answer.state.state == SimulationState.STATE_PAUSED
+    simulation = Simulated(client)
+    assert simulation.state() == PAUSED
     assert {(m.clock.sec, m.clock.nanosec) for m in clock.messages} <= {(0, 0)}
-    playing = SimulationState(state=SimulationState.STATE_PLAYING)
-    client.call(
-        SetSimulationState, "/set_simulation_state", SetSimulationState.Request(state=playing)
-    )
+    simulation.go_to(PLAYING)
     clock.wait_until(lambda messages: messages and messages[-1].clock.nanosec > 0, "time goes on")

@@ -77,11 +77,6 @@ def test_they_are_listed_with_the_hardware(client):
 
 
 def test_its_clock_is_that_of_the_simulation(client):
-    from rcl_interfaces.srv import GetParameters
-
     for node in ("controller_manager", NAME, "cell"):
-        (value,) = client.call(
-            GetParameters, f"/{node}/get_parameters", GetParameters.Request(names=["use_sim_time"])
-        ).values
-        assert value.bool_value, node
+        assert client.get_parameter(f"/{node}", "use_sim_time"), node
     assert not client.node.get_subscriptions_info_by_topic("/clock")

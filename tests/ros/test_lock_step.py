@@ -9,14 +9,13 @@ from pathlib import Path
 import pytest
 import yaml
 from run_python import run_python
+from simulated import PAUSED, PLAYING, Simulated
 
 pytestmark = pytest.mark.ros
 
 PARTNER = Path(__file__).with_name("lock_step_partner.py")
 TIMEOUT_S = 120.0
 LAST = 400
-PAUSED, PLAYING = 2, 1
-OK = 1
 
 
 @pytest.fixture(scope="module")
@@ -97,28 +96,12 @@ def test_the_run_repeats_to_the_last_bit(runs):
 
 
 def test_a_silent_partner_pauses_the_run_and_another_one_continues_it(runs, client):
-    from rcl_interfaces.srv import SetParameters
-    from rclpy.parameter import Parameter
-    from simulation_interfaces.srv import GetSimulationState, SetSimulationState
-
-    parameter = Parameter("lockstep_timeout", value=0.2).to_parameter_msg()
-    request = SetParameters.Request(parameters=[parameter])
-    answer = client.call(SetParameters, "/arm_gazebo/set_parameters", request, TIMEOUT_S)
-    assert answer.results[0].successful, answer
-
-    def state() -> int:
-        request = GetSimulationState.Request()
-        return client.call(GetSimulationState, "/get_simulation_state", request).state.state
-
-    client.wait_until(lambda: state() == PAUSED, "the pause")
+    simulation = Simulated(client)
+    assert simulation.set(lockstep_timeout=0.2) == ""
+    client.wait_until(lambda: simulation.state() == PAUSED, "the pause")
     said = f"lock-step: no answer from /partner for the time {LAST / 100:.3f} s within"
     client.wait_until(lambda: said in runs[2].read_text(), f"the log: {said}")
-    parameter = Parameter("lockstep_timeout", value=60.0).to_parameter_msg()
-    request = SetParameters.Request(parameters=[parameter])
-    assert client.call(SetParameters, "/arm_gazebo/set_parameters", request).results[0].successful
-    request = SetSimulationState.Request()
-    request.state.state = PLAYING
-    answer = client.call(SetSimulationState, "/set_simulation_state", request)
-    assert answer.result.result == OK, answer
+    assert simulation.set(lockstep_timeout=60.0) == ""
+    simulation.go_to(PLAYING)
     seen = partner_until(LAST + 50)
     assert [period for period, _ in seen] == list(range(LAST + 1, LAST + 51))

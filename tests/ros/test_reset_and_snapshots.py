@@ -4,6 +4,7 @@ import threading
 from typing import Any
 
 import pytest
+from simulated import OK, PAUSED, PLAYING, Simulated
 
 pytestmark = pytest.mark.ros
 
@@ -15,45 +16,16 @@ JOINTS = (
 RESETS = 25
 MEMORY_MB = 30.0
 START_TIMEOUT_S = 60.0
-OK, NO_RESOURCE = 1, 102
-PLAYING, PAUSED = 1, 2
+NO_RESOURCE = 102
 SCOPE_TIME, SCOPE_ALL = 1, 255
 ABORTED = "Goal aborted: the simulation was reset."
 
 
-class User:
+class User(Simulated):
     """Sends goals, and resets the simulation."""
 
-    def __init__(self, client: Any) -> None:
-        self._client = client
-
-    def reset(self, scope: int = 0) -> Any:
-        from simulation_interfaces.srv import ResetSimulation
-
-        request = ResetSimulation.Request(scope=scope)
-        return self._client.call(ResetSimulation, "/reset_simulation", request).result
-
-    def snapshot(self, do: str, name: str) -> Any:
-        """Save, restore or remove a snapshot; return the answer."""
-        from simulation_interfaces.msg import Resource
-        from simulation_interfaces.srv import LoadWorld
-
-        request = LoadWorld.Request(world_resource=Resource(uri=name))
-        return self._client.call(LoadWorld, f"/{do}_snapshot", request)
-
     def step(self, count: int) -> None:
-        from simulation_interfaces.srv import StepSimulation
-
-        request = StepSimulation.Request(steps=count)
-        assert self._client.call(StepSimulation, "/step_simulation", request).result.result == OK
-
-    def go_to(self, state: int) -> None:
-        from simulation_interfaces.msg import SimulationState
-        from simulation_interfaces.srv import SetSimulationState
-
-        request = SetSimulationState.Request(state=SimulationState(state=state))
-        answer = self._client.call(SetSimulationState, "/set_simulation_state", request)
-        assert answer.result.result == OK
+        self.do("StepSimulation", steps=count)
 
     def follow(self, position: float, seconds: int) -> Any:
         """Start a trajectory, and wait until it moves the arm; return the future of its result."""
@@ -80,13 +52,13 @@ class User:
         return self._start(GripperCommand, GRIPPER, goal)
 
     def _start(self, kind: Any, name: str, goal: Any, take_feedback: Any = None) -> Any:
-        action = self._client.action(kind, name)
-        pending = self._client.send_goal(action, goal, take_feedback)
+        action = self.client.action(kind, name)
+        pending = self.client.send_goal(action, goal, take_feedback)
         assert pending is not None, f"{name} rejects the goal"
         return pending
 
     def result_of(self, pending: Any) -> Any:
-        return self._client.result_of(pending, "the goal")
+        return self.client.result_of(pending, "the goal")
 
 
 @pytest.fixture(scope="module")
@@ -122,7 +94,7 @@ def test_clock_states_and_transforms_start_anew_and_goals_end_with_the_reason(us
     clock.wait_until(lambda m: bool(m) and seconds(m[-1].clock) > 1.0, "a second of time")
     follow, grip = user.follow(0.5, 100), user.grip(-0.7)
     frames.wait_for(1)
-    assert user.reset().result == OK
+    user.reset()
     followed = user.result_of(follow)
     assert followed.status == GoalStatus.STATUS_ABORTED
     assert followed.result.error_string == ABORTED
@@ -144,34 +116,26 @@ def test_the_clock_alone_is_reset_and_a_goal_goes_on(user, client):
     from action_msgs.msg import GoalStatus
 
     follow = user.follow(-0.3, 2)
-    assert user.reset(SCOPE_TIME).result == OK
+    user.reset(SCOPE_TIME)
     assert user.result_of(follow).status == GoalStatus.STATUS_SUCCEEDED
 
 
 def test_a_parameter_lets_the_clock_go_on(user, client):
-    from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-    from rcl_interfaces.srv import SetParameters
     from rosgraph_msgs.msg import Clock
 
-    def set_to(value: bool) -> None:
-        kind = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=value)
-        request = SetParameters.Request(parameters=[Parameter(name="reset_clock", value=kind)])
-        answer = client.call(SetParameters, "/arm_gazebo/set_parameters", request)
-        assert answer.results[0].successful
-
-    set_to(False)
+    assert user.set(reset_clock=False) == ""
     clock = client.subscribe(Clock, "/clock")
     clock.wait_until(lambda m: bool(m) and seconds(m[-1].clock) > 1.0, "a second of time")
-    refused = user.reset(SCOPE_TIME)
+    refused = user.ask("ResetSimulation", scope=SCOPE_TIME).result
     assert refused.result != OK
     assert refused.error_message == (
         "the clock is not reset, because the parameter reset_clock is false"
     )
-    assert user.reset(SCOPE_ALL).result == OK
+    user.reset(SCOPE_ALL)
     clock.clear()
     clock.wait_until(lambda m: len(m) > 10, "time goes on")
     assert seconds(clock.messages[0].clock) > 1.0
-    set_to(True)
+    assert user.set(reset_clock=True) == ""
 
 
 def position(state: Any) -> float:
@@ -202,13 +166,13 @@ def test_a_restored_run_publishes_the_same_bits_and_its_goal_goes_on(user, clien
     follow, file = user.follow(0.4, 2), str(tmp_path / "a.snapshot")
     user.go_to(PAUSED)
     saved = user.snapshot("save", file)
-    assert saved.result.result == OK, saved
+    assert saved.result == OK, saved
     first = stepped()
     user.go_to(PLAYING)
     assert user.result_of(follow).status == GoalStatus.STATUS_SUCCEEDED
     user.go_to(PAUSED)
     restored = client.subscribe(JointState, "/joint_states", 1000)
-    assert user.snapshot("restore", file).result.result == OK
+    assert user.snapshot("restore", file).result == OK
     # On a busy machine the last state before the pause may come late.
     saved_s = pytest.approx(min(first) - 0.01)
     assert restored.wait_until(
@@ -224,16 +188,16 @@ def test_a_restored_run_publishes_the_same_bits_and_its_goal_goes_on(user, clien
 def test_goals_that_a_snapshot_does_not_have_are_aborted(user):
     from action_msgs.msg import GoalStatus
 
-    assert user.snapshot("save", "idle").result.result == OK
+    assert user.snapshot("save", "idle").result == OK
     follow = user.follow(0.4, 100)
-    assert user.snapshot("restore", "idle").result.result == OK
+    assert user.snapshot("restore", "idle").result == OK
     ended = user.result_of(follow)
     assert ended.status == GoalStatus.STATUS_ABORTED
     assert ended.result.error_string == (
         "Goal aborted: the simulation was restored to a snapshot without this goal."
     )
-    assert user.snapshot("remove", "idle").result.result == OK
-    refused = user.snapshot("restore", "idle").result
+    assert user.snapshot("remove", "idle").result == OK
+    refused = user.snapshot("restore", "idle")
     assert (refused.result, refused.error_message) == (
         NO_RESOURCE,
         "no snapshot 'idle'; there is none",
@@ -250,7 +214,7 @@ def test_many_resets_leave_nothing_behind_and_no_goal_is_missed(user, client, si
 
     def reset() -> None:
         follow = user.follow(0.2, 100)
-        assert user.reset().result == OK
+        user.reset()
         assert user.result_of(follow).result.error_string == ABORTED
 
     for _ in range(3):

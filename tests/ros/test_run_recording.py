@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from programs import RosProgram
+from simulated import Simulated
 
 from arm_description.resources import resolve_uri
 from arm_description.xacro.expansion import expand_xacro
@@ -82,19 +83,13 @@ def test_a_launch_is_recorded_from_its_start_also_if_the_simulation_is_killed(
 def test_a_recording_is_refused_in_a_sentence_and_begins_and_ends_by_a_parameter(
     launch, client, tmp_path
 ):
-    from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-    from rcl_interfaces.srv import SetParameters
-    from simulation_interfaces.srv import ResetSimulation
     from std_msgs.msg import Float64MultiArray
     from std_srvs.srv import SetBool
 
     def record_to(file) -> str:
-        value = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=str(file))
-        request = SetParameters.Request(parameters=[Parameter(name="record_run", value=value)])
-        answer = client.call(SetParameters, "/arm_gazebo/set_parameters", request)
-        return answer.results[0].reason
+        return simulation.set(record_run=str(file))
 
-    path = tmp_path / "middle.run"
+    simulation, path = Simulated(client), tmp_path / "middle.run"
     launch("camera:=none").wait_until_ready()
     commands = client.publisher(Float64MultiArray, "/position_controller/commands")
     states = states_of(client)
@@ -106,7 +101,7 @@ def test_a_recording_is_refused_in_a_sentence_and_begins_and_ends_by_a_parameter
     for is_engaged in (True, False):
         client.call(SetBool, "/emergency_stop", SetBool.Request(data=is_engaged))
     # Also the clock goes back to 0.
-    client.call(ResetSimulation, "/reset_simulation", ResetSimulation.Request())
+    simulation.reset()
     move(client, commands, states, 0.4, 0.2, 0.1, 0.3)
     assert record_to("") == ""
     assert f"{path} exists already" in record_to(path)

@@ -1,6 +1,7 @@
 """The pace of a simulation changes while it runs, and steps are answered when all is published."""
 
 import pytest
+from simulated import PAUSED, PLAYING, Simulated
 
 pytestmark = pytest.mark.ros
 
@@ -8,9 +9,7 @@ START_TIMEOUT_S = 120.0
 PERIOD_S = 0.01
 RATE_HZ = 25.0
 """Of the camera: a picture in every fourth control period."""
-OK = 1
 DEPTH = 1000
-PLAYING, PAUSED = 1, 2
 
 
 def stamp_s(message) -> float:
@@ -50,40 +49,16 @@ def simulation(simulate):
     )
 
 
-class Simulator:
-    """The services of the simulation."""
+class Simulator(Simulated):
+    """The simulation with its statistics."""
 
-    def __init__(self, client) -> None:
-        self._client = client
-
-    def step(self, steps: int, service: str = "/step_simulation"):
-        from simulation_interfaces.srv import StepSimulation
-
-        request = StepSimulation.Request(steps=steps)
-        answer = self._client.call(StepSimulation, service, request, START_TIMEOUT_S)
-        assert answer.result.result == OK, answer
-
-    def go_to(self, state: int) -> None:
-        from simulation_interfaces.srv import SetSimulationState
-
-        request = SetSimulationState.Request()
-        request.state.state = state
-        answer = self._client.call(SetSimulationState, "/set_simulation_state", request)
-        assert answer.result.result == OK, answer
-
-    def set_speed(self, value: object):
-        """Ask for another real-time factor; return the answer."""
-        from rcl_interfaces.srv import SetParameters
-        from rclpy.parameter import Parameter
-
-        parameter = Parameter("real_time_factor", value=value).to_parameter_msg()
-        request = SetParameters.Request(parameters=[parameter])
-        return self._client.call(SetParameters, "/arm_gazebo/set_parameters", request).results[0]
+    def step(self, steps: int, service: str = "") -> None:
+        self.do("StepSimulation", service, steps=steps)
 
     def figures(self) -> dict[str, dict[str, str]]:
         from diagnostic_msgs.srv import SelfTest
 
-        answer = self._client.call(SelfTest, "/simulation/get_statistics", SelfTest.Request())
+        answer = self.client.call(SelfTest, "/simulation/get_statistics", SelfTest.Request())
         assert answer.passed == b"\x01", answer
         return {
             status.name: {pair.key: pair.value for pair in status.values}
@@ -109,7 +84,7 @@ def subscribed(simulator, client):
         collector = client.subscribe(message_type, topic, DEPTH)
 
         def comes() -> bool:
-            simulator.step(4, "/step_simulation_with_sensors")
+            simulator.step(4, "step_simulation_with_sensors")
             return bool(collector.messages)
 
         client.wait_until(comes, f"messages on {topic}", START_TIMEOUT_S)
@@ -138,7 +113,7 @@ def test_steps_with_sensors_take_every_picture(simulator, subscribed):
     pictures, last = subscribed(Image, "/videocamera")
     pictures.wait_until(lambda m: ticks(m)[-1] == last - last % 4, "the pictures so far")
     pictures.clear()
-    simulator.step(40, "/step_simulation_with_sensors")
+    simulator.step(40, "step_simulation_with_sensors")
     due = [tick for tick in range(last + 1, last + 41) if tick % 4 == 0]
     pictures.wait_until(lambda m: len(m) >= len(due), "ten pictures")
     assert ticks(pictures.messages) == due
@@ -155,7 +130,7 @@ def test_a_change_of_the_speed_loses_no_tick_and_no_message(simulator, client, s
     simulator.go_to(PLAYING)
     # No faster, or a busy machine loses messages on their way to this process.
     for factor in (0.5, 4.0, 1.0, 3.0, 2.0):
-        assert simulator.set_speed(factor).successful
+        assert simulator.set(real_time_factor=factor) == ""
         count = len(states.messages)
         states.wait_until(lambda m, count=count: len(m) > count + 20, "more states")
     simulator.go_to(PAUSED)
@@ -175,9 +150,7 @@ def test_a_change_of_the_speed_loses_no_tick_and_no_message(simulator, client, s
     ],
 )
 def test_a_speed_that_is_none_is_refused(simulator, value, reason):
-    answer = simulator.set_speed(value)
-    assert not answer.successful
-    assert reason in answer.reason
+    assert reason in simulator.set(real_time_factor=value)
 
 
 def test_statistics_come_once_a_second(simulator, client):
@@ -204,7 +177,7 @@ def test_a_joint_stops_when_its_commands_cease(simulator, client):
 
     commands = client.publisher(Float64MultiArray, "/turner/commands")
     states = client.subscribe(JointState, "/joint_states", DEPTH)
-    assert simulator.set_speed(2.0).successful
+    assert simulator.set(real_time_factor=2.0) == ""
     simulator.go_to(PLAYING)
     commands.publish(Float64MultiArray(data=[0.3]))
     # It may have stopped before this thread looks.

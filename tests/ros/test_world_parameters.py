@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from robots import crate
+from simulated import Simulated
 
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
@@ -13,66 +14,23 @@ pytestmark = pytest.mark.ros
 
 CRATE = crate(size=0.2)
 MOON = [0.0, 0.0, -1.62]
-OK = 1
 
 
-class World:
-    """The parameters and services of a running simulation."""
-
-    def __init__(self, client) -> None:
-        self._client = client
+class World(Simulated):
+    """The simulation with the parameters of its world."""
 
     def names(self) -> set[str]:
         from rcl_interfaces.srv import ListParameters
 
         request = ListParameters.Request(prefixes=["gravity", "entities"])
-        answer = self._client.call(ListParameters, "/simulation/list_parameters", request)
+        answer = self.client.call(ListParameters, "/simulation/list_parameters", request)
         return set(answer.result.names)
 
     def get(self, name: str):
-        from rcl_interfaces.srv import GetParameters
+        return self.client.get_parameter("/simulation", name)
 
-        request = GetParameters.Request(names=[name])
-        [value] = self._client.call(GetParameters, "/simulation/get_parameters", request).values
-        return list(value.double_array_value) or value.double_value
-
-    def set(self, **values) -> str:
-        """Set parameters, all or nothing; return why they were refused."""
-        from rcl_interfaces.srv import SetParametersAtomically
-        from rclpy.parameter import Parameter
-
-        named = [Parameter(name.replace("__", "."), value=v) for name, v in values.items()]
-        request = SetParametersAtomically.Request(parameters=[p.to_parameter_msg() for p in named])
-        answer = self._client.call(
-            SetParametersAtomically, "/simulation/set_parameters_atomically", request
-        )
-        assert answer.result.successful is not bool(answer.result.reason), answer
-        return answer.result.reason
-
-    def spawn(self, name: str) -> None:
-        from simulation_interfaces.msg import Resource
-        from simulation_interfaces.srv import SpawnEntity
-
-        resource = Resource(resource_string=CRATE)
-        request = SpawnEntity.Request(name=name, entity_resource=resource)
-        request.initial_pose.pose.position.z = 0.1
-        request.initial_pose.pose.position.x = 2.0
-        answer = self._client.call(SpawnEntity, "/spawn_entity", request)
-        assert answer.result.result == OK, answer
-
-    def delete(self, name: str) -> None:
-        from simulation_interfaces.srv import DeleteEntity
-
-        request = DeleteEntity.Request(entity=name)
-        answer = self._client.call(DeleteEntity, "/delete_entity", request)
-        assert answer.result.result == OK, answer
-
-    def reset(self, scope: int) -> None:
-        from simulation_interfaces.srv import ResetSimulation
-
-        request = ResetSimulation.Request(scope=scope)
-        answer = self._client.call(ResetSimulation, "/reset_simulation", request)
-        assert answer.result.result == OK, answer
+    def set(self, node: str = "/simulation", **values) -> str:
+        return super().set(node, **values)
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +61,7 @@ def test_parameters_follow_the_world_and_change_it(world):
     assert world.set(gravity=MOON, entities__red_box__mass=0.5) == ""
     assert (world.get("gravity"), world.get("entities.red_box.mass")) == (MOON, 0.5)
 
-    world.spawn("crate")
+    world.spawn("crate", CRATE, 2.0, 0.0, 0.1)
     assert {"entities.crate.mass", "entities.crate.friction"} <= world.names()
     assert world.set(entities__crate__friction=0.1) == ""
     assert world.get("entities.crate.friction") == 0.1
@@ -131,7 +89,7 @@ def test_what_is_wrong_is_refused_with_a_reason_and_changes_nothing(world):
 
 def test_a_run_over_ros_repeats_with_them(world, running, recording):
     assert world.set(gravity=[0.5, 0.0, -3.0], entities__red_box__mass=0.05) == ""
-    world.spawn("crate")
+    world.spawn("crate", CRATE, 2.0, 0.0, 0.1)
     assert world.set(entities__crate__friction=0.02) == ""
     world.reset(0)
     assert world.set(gravity=MOON) == ""

@@ -1,12 +1,11 @@
 """Entities are spawned, moved and deleted in a running simulation without affecting the arm."""
 
 import re
-import threading
-from typing import Any
 
 import numpy as np
 import pytest
 from robots import crate
+from simulated import OK, PAUSED, PLAYING, Simulated
 
 pytestmark = pytest.mark.ros
 
@@ -14,7 +13,6 @@ CRATE = crate(size=0.2)
 WALL = """<sdf version="1.9"><model name="wall"><static>true</static><link name="l">
   <visual name="v"><geometry><box><size>6 6 6</size></box></geometry>
   <material><diffuse>1 0 0 1</diffuse></material></visual></link></model></sdf>"""
-FIRST_ANSWER_S = 2.0
 SPAWNED = "joint_state_broadcaster,position_controller"
 CONTROLLERS = {
     "controller_manager": {
@@ -24,98 +22,6 @@ CONTROLLERS = {
     "position_controller": {"joints": ["j0", "j1", "j2", "j3"]},
 }
 START_TIMEOUT_S = 120.0
-OK = 1
-NO_STATE = 255
-
-
-class Simulator:
-    """The services of a simulation, each asked for once before it counts.
-
-    An answer is lost where the server has not found the client yet. So every service is first
-    asked what it refuses, again and again, until an answer comes.
-    """
-
-    def __init__(self, client) -> None:
-        import simulation_interfaces.srv as services
-
-        self._client = client
-        self._types = services
-        self._clients = {}
-
-    def __call__(self, service: str, **fields):
-        """Return the answer of a service; its name is that of its type."""
-        type_ = getattr(self._types, service)
-        if service not in self._clients:
-            self._clients[service] = self._matched(service, type_)
-        return self._answer(service, type_.Request(**fields), 30.0)
-
-    def ask(self, service: str, **fields) -> Any:
-        """Return the future of an answer that takes long."""
-        type_ = getattr(self._types, service)
-        if service not in self._clients:
-            self._clients[service] = self._matched(service, type_)
-        return self._clients[service].call_async(type_.Request(**fields))
-
-    def _matched(self, service, type_):
-        name = "".join(f"_{c.lower()}" if c.isupper() else c for c in service)[1:]
-        made = self._client.node.create_client(type_, f"/{name}")
-        self._clients[service] = made
-        self._client.wait_until(made.service_is_ready, f"service /{name}", START_TIMEOUT_S)
-        refused = type_.Request()
-        if service == "SetSimulationState":
-            refused.state.state = NO_STATE
-        if service == "StepSimulation":
-            refused.steps = 0
-        self._client.wait_until(
-            lambda: self._answer(service, refused, FIRST_ANSWER_S), f"an answer of {name}"
-        )
-        return made
-
-    def _answer(self, service, request, timeout_s: float) -> Any:
-        done = threading.Event()
-        future = self._clients[service].call_async(request)
-        future.add_done_callback(lambda _: done.set())
-        if done.wait(timeout_s):
-            return future.result()
-        self._clients[service].remove_pending_request(future)
-        return None
-
-    def spawn(self, name: str, text: str, x: float, y: float, z: float) -> None:
-        from geometry_msgs.msg import Point, Pose, PoseStamped
-        from simulation_interfaces.msg import Resource
-
-        answer = self(
-            "SpawnEntity",
-            name=name,
-            entity_resource=Resource(resource_string=text),
-            initial_pose=PoseStamped(pose=Pose(position=Point(x=x, y=y, z=z))),
-        )
-        assert (answer.result.result, answer.entity_name) == (OK, name), answer
-
-    def move(self, name: str, x: float, y: float, z: float) -> None:
-        from geometry_msgs.msg import Point, Pose
-        from simulation_interfaces.msg import EntityState
-
-        state = EntityState(pose=Pose(position=Point(x=x, y=y, z=z)))
-        answer = self("SetEntityState", entity=name, state=state, set_pose=True)
-        assert answer.result.result == OK, answer
-
-    def delete(self, name: str) -> None:
-        answer = self("DeleteEntity", entity=name)
-        assert answer.result.result == OK, answer
-
-    def go_to(self, state: int) -> None:
-        from simulation_interfaces.msg import SimulationState
-
-        answer = self("SetSimulationState", state=SimulationState(state=state))
-        assert answer.result.result == OK, answer
-
-    def where(self, name: str) -> tuple[float, np.ndarray]:
-        """Return the time and the place of an entity."""
-        answer = self("GetEntityState", entity=name)
-        assert answer.result.result == OK, answer
-        stamp, p = answer.state.header.stamp, answer.state.pose.position
-        return stamp.sec + stamp.nanosec * 1e-9, np.array([p.x, p.y, p.z])
 
 
 @pytest.fixture(scope="module")
@@ -131,8 +37,8 @@ def arm(simulate):
 
 
 @pytest.fixture
-def simulator(arm, client) -> Simulator:
-    return Simulator(client)
+def simulator(arm, client) -> Simulated:
+    return Simulated(client)
 
 
 def test_the_arm_holds_while_entities_are_spawned_moved_and_deleted(simulator, client):
@@ -230,19 +136,16 @@ def test_contacts_are_markers_while_somebody_subscribes(simulator, client, latch
 
 
 def test_time_stops_and_advances_by_steps(simulator, client):
-    from simulation_interfaces.msg import SimulationState
-
     simulator.spawn("crate", CRATE, 3.0, 3.0, 2.0)
-    simulator.go_to(SimulationState.STATE_PAUSED)
+    simulator.go_to(PAUSED)
     simulator.move("crate", 3.0, 3.0, 5.0)
     before_s, place = simulator.where("crate")
     assert place == pytest.approx([3.0, 3.0, 5.0])
-    answer = simulator("StepSimulation", steps=20)
-    assert answer.result.result == OK, answer
+    simulator.do("StepSimulation", steps=20)
     after_s, fallen = simulator.where("crate")
     assert after_s - before_s == pytest.approx(0.2, abs=1e-6)
     assert fallen[2] == pytest.approx(5.0 - 0.5 * 9.81 * 0.2**2, abs=0.02)
-    simulator.go_to(SimulationState.STATE_PLAYING)
+    simulator.go_to(PLAYING)
     client.wait_until(lambda: simulator.where("crate")[0] > after_s, "time going on")
     simulator.delete("crate")
 
@@ -263,27 +166,24 @@ def test_forty_requests_at_once_are_all_answered(simulator, client):
 
 
 def test_a_long_run_of_steps_can_be_cancelled(simulator, client):
-    from simulation_interfaces.msg import SimulationState
-
-    simulator.go_to(SimulationState.STATE_PAUSED)
+    simulator.go_to(PAUSED)
     before_s, _ = simulator.where("arm")
-    steps = simulator.ask("StepSimulation", steps=2**40)
+    steps = simulator.start("StepSimulation", steps=2**40)
     client.wait_until(lambda: simulator.where("arm")[0] > before_s + 1.0, "a second of steps")
-    simulator.go_to(SimulationState.STATE_PAUSED)
+    simulator.go_to(PAUSED)
     result = client.result_of(steps, "step_simulation").result
     assert result.result == result.RESULT_OPERATION_FAILED
     assert f" of {2**40} steps: the state was changed" in result.error_message
-    simulator.go_to(SimulationState.STATE_PLAYING)
+    simulator.go_to(PLAYING)
 
 
 def test_the_arm_continues_in_another_world(simulator, client):
     from sensor_msgs.msg import JointState
-    from simulation_interfaces.msg import Resource, SimulationState
+    from simulation_interfaces.msg import Resource
 
-    answer = simulator("LoadWorld", world_resource=Resource(uri="shapes"))
-    assert (answer.result.result, answer.world.name) == (OK, "shapes"), answer
-    assert "cone" in simulator("GetEntities").entities
-    simulator.go_to(SimulationState.STATE_PLAYING)
+    assert simulator.do("LoadWorld", world_resource=Resource(uri="shapes")).world.name == "shapes"
+    assert "cone" in simulator.do("GetEntities").entities
+    simulator.go_to(PLAYING)
     states = client.subscribe(JointState, "/joint_states")
     states.wait_for(20)
     held = np.array([message.position for message in states.messages])
@@ -304,7 +204,7 @@ def test_invalid_requests_are_refused_with_a_sentence(simulator):
         ("SetEntityState", {"entity": "cone", "state": EntityState()}),
         ("LoadWorld", {"world_resource": Resource(uri="nowhere")}),
     ):
-        answer = simulator(service, **fields)
+        answer = simulator.ask(service, **fields)
         assert answer.result.result != OK, (service, fields)
         assert len(answer.result.error_message.split()) > 2, (service, answer)
 

@@ -255,15 +255,7 @@ def control_of(client: Any) -> Callable[[str], Control]:
 @pytest.fixture
 def get_parameter(client: Any) -> Callable[[str, str], Any]:
     """Return a function that returns a node's parameter, None where it has no such one."""
-    from rcl_interfaces.srv import GetParameters
-    from rclpy.parameter import parameter_value_to_python
-
-    def get(node: str, name: str) -> Any:
-        request = GetParameters.Request(names=[name])
-        (value,) = client.call(GetParameters, f"{node}/get_parameters", request).values
-        return parameter_value_to_python(value)
-
-    return get
+    return client.get_parameter
 
 
 @pytest.fixture

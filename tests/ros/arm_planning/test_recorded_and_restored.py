@@ -6,12 +6,13 @@ from typing import Any
 
 import pytest
 from programs import RosProgram
+from simulated import OK, Simulated
 
 pytestmark = pytest.mark.ros
 
 SUCCESS, CONTROL_FAILED = 1, -4
 SUCCEEDED, ABORTED = 4, 6
-OK, SCOPE_TIME, SCOPE_ALL = 1, 1, 255
+SCOPE_TIME, SCOPE_ALL = 1, 255
 TURN = "link1_to_link2"
 SLOW = {"max_velocity_scaling_factor": 0.1}
 """A turn by 2 rad takes 7 s of the robot's time."""
@@ -19,46 +20,6 @@ NEAR = 0.02
 CAN = "coke_can"
 WORLD = "world_"
 """The shapes of the world itself; the robot has a link `world`."""
-
-
-class Run:
-    """What a user does to the simulation."""
-
-    def __init__(self, client: Any) -> None:
-        self._client = client
-
-    def snapshot(self, do: str, name: str) -> None:
-        from simulation_interfaces.msg import Resource
-        from simulation_interfaces.srv import LoadWorld
-
-        request = LoadWorld.Request(world_resource=Resource(uri=name))
-        answer = self._client.call(LoadWorld, f"/{do}_snapshot", request)
-        assert answer.result.result == OK, answer.result.error_message
-
-    def reset(self, scope: int = SCOPE_ALL) -> None:
-        from simulation_interfaces.srv import ResetSimulation
-
-        request = ResetSimulation.Request(scope=scope)
-        answer = self._client.call(ResetSimulation, "/reset_simulation", request)
-        assert answer.result.result == OK, answer.result.error_message
-
-    def set(self, name: str, value: bool | str) -> None:
-        from rcl_interfaces.srv import SetParameters
-        from rclpy.parameter import Parameter
-
-        parameter = Parameter(name, value=value).to_parameter_msg()
-        request = SetParameters.Request(parameters=[parameter])
-        (answer,) = self._client.call(SetParameters, "/arm_gazebo/set_parameters", request).results
-        assert answer.successful, answer.reason
-
-    def move(self, name: str, x: float, y: float, z: float) -> None:
-        from simulation_interfaces.srv import SetEntityState
-
-        request = SetEntityState.Request(entity=name, set_pose=True)
-        position = request.state.pose.position
-        position.x, position.y, position.z = x, y, z
-        answer = self._client.call(SetEntityState, "/set_entity_state", request)
-        assert answer.result.result == OK, answer.result.error_message
 
 
 def arm(*words: str) -> str:
@@ -81,7 +42,7 @@ def planning(planning_for_file):
 
 @pytest.fixture
 def run(planning):
-    return Run(planning.client)
+    return Simulated(planning.client)
 
 
 @pytest.fixture
@@ -135,19 +96,19 @@ def test_a_run_with_planned_motions_repeats_to_the_last_bit(
     planning, run, at_the_start, turn_to, tmp_path
 ):
     path = str(tmp_path / "planned.run")
-    run.set("record_run", path)
+    assert run.set(record_run=path) == ""
     succeed(planning.move(turn_to(0.4)))
     cancelled = planning.start_move(turn_to(-1.0, **SLOW))
     planning.joint_moves(TURN, by=0.05)
     cancelled.cancel()
     cancelled.end()
-    run.snapshot("save", "recorded")
+    assert run.snapshot("save", "recorded").result == OK
     restored = planning.start_move(turn_to(-1.0, **SLOW))
     planning.joint_moves(TURN, by=0.05)
-    run.snapshot("restore", "recorded")
+    assert run.snapshot("restore", "recorded").result == OK
     restored.end()
     succeed(planning.move(turn_to(0.6)))
-    run.set("record_run", "")
+    assert run.set(record_run="") == ""
     assert "control periods are equal" in arm("sim", "replay", path)
 
 
@@ -157,20 +118,20 @@ def test_a_run_with_planned_motions_repeats_to_the_last_bit(
 def test_a_motion_that_a_snapshot_has_goes_on_from_there(planning, run, at_the_start, turn_to):
     goal = planning.start_move(turn_to(1.0, **SLOW))
     planning.joint_moves(TURN, by=0.1)
-    run.snapshot("save", "moving")
+    assert run.snapshot("save", "moving").result == OK
     saved = planning.positions()[TURN]
     planning.joint_moves(TURN, by=0.4)
-    run.snapshot("restore", "moving")
+    assert run.snapshot("restore", "moving").result == OK
     assert planning.positions()[TURN] < saved + 0.3
     succeed(goal.end())
     assert planning.positions()[TURN] == pytest.approx(1.0, abs=NEAR)
 
 
 def test_a_snapshot_without_the_motion_ends_it_and_says_so(planning, run, at_the_start, turn_to):
-    run.snapshot("save", "still")
+    assert run.snapshot("save", "still").result == OK
     goal = planning.start_move(turn_to(1.0, **SLOW))
     planning.joint_moves(TURN, by=0.2)
-    run.snapshot("restore", "still")
+    assert run.snapshot("restore", "still").result == OK
     ended = goal.end()
     assert (ended.status, ended.result.error_code.val) == (ABORTED, CONTROL_FAILED)
     assert "the simulation was restored" in ended.result.error_code.message
@@ -180,22 +141,22 @@ def test_a_snapshot_without_the_motion_ends_it_and_says_so(planning, run, at_the
 
 def test_things_in_the_scene_are_where_the_snapshot_has_them(planning, run, at_the_start):
     before = place_of(planning, CAN)
-    run.snapshot("save", "things")
+    assert run.snapshot("save", "things").result == OK
     run.move(CAN, 0.1, 0.5, 0.1)
     planning.client.wait_until(lambda: place_of(planning, CAN)[1] > 0.4, "the can elsewhere")
-    run.snapshot("restore", "things")
+    assert run.snapshot("restore", "things").result == OK
     planning.client.wait_until(lambda: is_at(planning, CAN, before), "the can back")
     assert is_at(planning, CAN, before)
 
 
 def test_a_thing_that_was_held_follows_the_simulation_again(planning, run, at_the_start, turn_to):
-    run.snapshot("save", "before")
+    assert run.snapshot("save", "before").result == OK
     before = place_of(planning, CAN)
     attach(planning, CAN)
     succeed(planning.move(turn_to(-0.8)))
     (held,) = planning.scene().robot_state.attached_collision_objects
     assert held.object.id == CAN
-    run.snapshot("restore", "before")
+    assert run.snapshot("restore", "before").result == OK
     # What clients told move_group is not in a snapshot.
     (held,) = planning.scene().robot_state.attached_collision_objects
     assert held.object.id == CAN
@@ -211,9 +172,9 @@ def test_a_thing_that_was_held_follows_the_simulation_again(planning, run, at_th
 def test_a_reset_ends_a_motion_and_says_so(planning, run, at_the_start, turn_to, keeps_clock):
     goal = planning.start_move(turn_to(1.0, **SLOW))
     planning.joint_moves(TURN, by=0.2)
-    run.set("reset_clock", not keeps_clock)
-    run.reset()
-    run.set("reset_clock", True)
+    assert run.set(reset_clock=not keeps_clock) == ""
+    run.reset(SCOPE_ALL)
+    assert run.set(reset_clock=True) == ""
     ended = goal.end()
     assert (ended.status, ended.result.error_code.val) == (ABORTED, CONTROL_FAILED)
     assert "the simulation was reset" in ended.result.error_code.message

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from robots import MYCOBOT_ARM
+from simulated import Simulated
 
 from arm_control.controllers.joint_trajectory.goals import GoalRequest
 from arm_gazebo.recording.comparison import compare
@@ -64,18 +65,7 @@ class User:
 
     def spawn(self) -> None:
         """Spawn the can."""
-        from geometry_msgs.msg import Point, Pose, PoseStamped
-        from simulation_interfaces.msg import Resource
-        from simulation_interfaces.srv import SpawnEntity
-
-        x, y, z = CAN_POSE
-        request = SpawnEntity.Request(
-            name="can",
-            entity_resource=Resource(resource_string=CAN),
-            initial_pose=PoseStamped(pose=Pose(position=Point(x=x, y=y, z=z))),
-        )
-        answer = self._client.call(SpawnEntity, "/spawn_entity", request)
-        assert answer.entity_name == "can", answer
+        Simulated(self._client).spawn("can", CAN, *CAN_POSE)
 
     def _status_of(self, kind: Any, name: str, goal: Any, cancel: bool = False) -> int:
         action = self._client.action(kind, name)

@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from simulated import Simulated
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -13,8 +14,6 @@ TIMEOUT_S = 250.0
 
 @pytest.mark.timeout(400)
 def test_the_cylinder_stands_at_its_new_place(launch, client):
-    from simulation_interfaces.srv import GetEntityState
-
     launch("mycobot", "planning:=true").wait_until_ready()
     done = subprocess.run(
         [*DEMO, "--ros-args", "-p", "execute:=true"],
@@ -25,8 +24,7 @@ def test_the_cylinder_stands_at_its_new_place(launch, client):
     )
     assert done.returncode == 0, done.stderr
     assert "Task executed successfully" in done.stderr
-    asked = GetEntityState.Request(entity="red_cylinder")
-    pose = client.call(GetEntityState, "/get_entity_state", asked).state.pose
+    pose = Simulated(client).state_of("red_cylinder").pose
     assert (pose.position.x, pose.position.y) == pytest.approx((-0.183, -0.14), abs=0.01)
     assert pose.position.z == pytest.approx(0.175, abs=2e-3)
     # Upright: no turn about x or y.

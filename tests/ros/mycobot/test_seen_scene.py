@@ -9,6 +9,7 @@ import pytest
 from programs import Program
 from robots import MYCOBOT_ARM
 from run_python import run_python
+from simulated import Simulated
 
 pytestmark = pytest.mark.ros
 
@@ -195,8 +196,6 @@ def test_what_cannot_be_found_is_not_a_success_and_the_log_says_why(
 @pytest.mark.slow
 @pytest.mark.timeout(400)
 def test_mtc_node_puts_down_elsewhere_what_the_camera_sees(server, client_for_file):
-    from simulation_interfaces.srv import GetEntityState
-
     done = run_python(
         "-m", "arm_cli", "launch", PACKAGE, LAUNCH_FILE, "execute:=true", timeout_s=TIMEOUT_S
     )
@@ -204,7 +203,6 @@ def test_mtc_node_puts_down_elsewhere_what_the_camera_sees(server, client_for_fi
     assert done.returncode == 0, said
     assert "is seen, on support_surface" in said
     assert "Task executed successfully" in said
-    asked = GetEntityState.Request(entity="red_cylinder")
-    pose = client_for_file.call(GetEntityState, "/get_entity_state", asked).state.pose
+    pose = Simulated(client_for_file).state_of("red_cylinder").pose
     assert (pose.position.x, pose.position.y) == pytest.approx((-0.183, -0.14), abs=0.015)
     assert pose.position.z == pytest.approx(0.175, abs=3e-3)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from page_user import DESK, PHONE, PageUser
 from robots import box, control, crate, joint, link, robot, sensor
+from simulated import Simulated
 
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 
@@ -67,17 +68,7 @@ def page_url(simulation) -> str:
 
 @pytest.fixture(scope="module")
 def crate_on_the_floor(simulation, client_for_file):
-    from geometry_msgs.msg import Point, Pose, PoseStamped
-    from simulation_interfaces.msg import Resource, Result
-    from simulation_interfaces.srv import SpawnEntity
-
-    request = SpawnEntity.Request(
-        name="crate",
-        entity_resource=Resource(resource_string=crate()),
-        initial_pose=PoseStamped(pose=Pose(position=Point(x=CRATE_M[0], y=CRATE_M[1], z=0.06))),
-    )
-    answer = client_for_file.call(SpawnEntity, "/spawn_entity", request)
-    assert answer.result.result == Result.RESULT_OK, answer
+    Simulated(client_for_file).spawn("crate", crate(), *CRATE_M[:2], 0.06)
 
 
 @pytest.fixture(scope="module", params=SIZES)

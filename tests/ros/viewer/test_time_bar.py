@@ -4,10 +4,10 @@ import re
 
 import pytest
 from page_user import DESK, KEEP_WHAT_IS_SAID, PHONE, PageUser
+from simulated import PAUSED, PLAYING, Simulated
 
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 
-PLAYING, PAUSED = 1, 2
 PERIOD_S = 0.01
 TOLERANCE_S = 0.03
 CAMERA = "none"
@@ -87,13 +87,7 @@ def client(client_for_file):
 @pytest.fixture
 def state(client):
     """Return a function that asks the simulation for its state."""
-    from simulation_interfaces.srv import GetSimulationState
-
-    def ask():
-        request = GetSimulationState.Request()
-        return client.call(GetSimulationState, "/get_simulation_state", request).state.state
-
-    return ask
+    return Simulated(client).state
 
 
 @pytest.fixture
@@ -139,12 +133,8 @@ def test_time_is_paused_stepped_and_goes_on(bar, state):
 
 
 def test_the_speed_is_chosen(bar, client):
-    from rcl_interfaces.srv import GetParameters
-
     def speed():
-        request = GetParameters.Request(names=["real_time_factor"])
-        answer = client.call(GetParameters, "/arm_gazebo/get_parameters", request)
-        return answer.values[0].double_value
+        return client.get_parameter("/arm_gazebo", "real_time_factor")
 
     bar.element("speed").select_option(label="0.5\u00d7")
     client.wait_until(lambda: speed() == 0.5, "the simulation's speed")

@@ -8,6 +8,7 @@ import re
 
 import pytest
 from page_user import DESK, KEEP_WHAT_IS_SAID, PHONE, PageUser
+from simulated import Simulated
 
 pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
 
@@ -98,18 +99,10 @@ class World(PageUser):
         self.page.evaluate(DROP, [name, base64.b64encode(data).decode()])
 
     def parameter(self, name):
-        from rcl_interfaces.srv import GetParameters
-
-        request = GetParameters.Request(names=[name])
-        [value] = self.client.call(GetParameters, "/simulation/get_parameters", request).values
-        return value
+        return self.client.get_parameter("/simulation", name)
 
     def position(self, name):
-        from simulation_interfaces.srv import GetEntityState
-
-        request = GetEntityState.Request(entity=name)
-        state = self.client.call(GetEntityState, "/get_entity_state", request).state
-        return state.pose.position
+        return Simulated(self.client).state_of(name).pose.position
 
 
 @on_each
@@ -159,8 +152,8 @@ def test_mass_and_friction_of_a_box_are_shown_and_set(world):
     world.enter("Friction to", "0.3")
     world.press("Set")
     world.shows("box: 0.25 kg, friction 0.3")
-    assert world.parameter("entities.box.mass").double_value == 0.25
-    assert world.parameter("entities.box.friction").double_value == 0.3
+    assert world.parameter("entities.box.mass") == 0.25
+    assert world.parameter("entities.box.friction") == 0.3
     world.shows("0.25 kg, friction 0.3")
     world.press("Set")
     world.shows("Type another mass or friction first: these are the present ones.")
@@ -170,7 +163,7 @@ def test_mass_and_friction_of_a_box_are_shown_and_set(world):
     world.enter("Mass to", "heavy")
     world.press("Set")
     world.shows("The mass is not a number: 'heavy'")
-    assert world.parameter("entities.box.mass").double_value == 0.25
+    assert world.parameter("entities.box.mass") == 0.25
     world.press("Delete")
     world.thing("box").wait_for(state="detached")
 
@@ -183,14 +176,14 @@ def test_gravity_is_shown_and_set(world):
     world.wait_until(lambda: field.input_value() == "0 0 -1.62", "the Moon's gravity in the field")
     world.press("Set gravity")
     world.shows("Gravity 0 0 -1.62 m/s²")
-    assert list(world.parameter("gravity").double_array_value) == [0.0, 0.0, -1.62]
+    assert world.parameter("gravity") == [0.0, 0.0, -1.62]
     world.enter("Gravity", "0 0 -1000")
     world.press("Set gravity")
     world.shows("the gravity is three numbers x y z from -100 to 100 m/s2")
     world.enter("Gravity", "0 0 -9.81")
     world.press("Set gravity")
     world.shows("Gravity is 0 0 -9.81 m/s²")
-    assert list(world.parameter("gravity").double_array_value) == [0.0, 0.0, -9.81]
+    assert world.parameter("gravity") == [0.0, 0.0, -9.81]
 
 
 def test_a_wrong_field_is_a_sentence(world):
@@ -222,13 +215,10 @@ def test_a_broken_file_and_one_of_another_kind_are_refused(world):
 
 @on_each
 def test_another_world_is_loaded(world):
-    from simulation_interfaces.srv import GetCurrentWorld
-
     world.unfold("Other world", "Load")
     wanted = "shapes" if world.page.viewport_size == SIZES["desk"] else "empty"
     world.page.get_by_role("combobox", name="Available").click()
     world.page.get_by_role("option", name=wanted, exact=True).click()
     world.press("Load")
     world.shows(f"Loaded {wanted}")
-    answer = world.client.call(GetCurrentWorld, "/get_current_world", GetCurrentWorld.Request())
-    assert answer.world.name == wanted
+    assert Simulated(world.client).do("GetCurrentWorld").world.name == wanted
