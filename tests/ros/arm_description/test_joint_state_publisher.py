@@ -83,19 +83,6 @@ def test_the_parameters_say_what_is_published(start, states, urdf_file):
     assert list(message.velocity) == list(message.effort) == [0.0, 0.0, 0.0]
 
 
-def test_sources_are_merged_by_name(client, start, states, urdf_file):
-    from sensor_msgs.msg import JointState
-
-    start(MODULE, urdf_file, source_list=["left", "right"])
-    for topic, name, position in (("left", "turn", 0.75), ("right", "push", 0.25)):
-        message = JointState(name=[name, "unknown"], position=[position, 9.0])
-        client.publisher(JointState, topic).publish(message)
-    merged = states.wait_until(
-        lambda m: bool(m) and list(m[-1].position) == [0.75, 0.25, 0.0], "both"
-    )
-    assert merged[-1].name == ["turn", "push", "grip"]
-
-
 def test_a_source_that_makes_no_sense_is_named_and_the_node_goes_on(
     client, start, states, urdf_file
 ):
@@ -162,15 +149,14 @@ def test_joints_that_mimic_in_a_circle_end_it(start, describe):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "parameters", "code", "sentence"),
+    ("arguments", "code", "sentence"),
     [
-        (["/no/such.urdf"], {}, 1, "cannot read /no/such.urdf: No such file or directory"),
-        ([], {"rate": 0}, 1, "rate must be an integer from 1 to 10000 (Hz), not 0"),
-        (["a", "b"], {}, 2, "unrecognized arguments: b"),
+        (["/no/such.urdf"], 1, "cannot read /no/such.urdf: No such file or directory"),
+        (["a", "b"], 2, "unrecognized arguments: b"),
     ],
 )
-def test_a_start_that_cannot_be_ends_with_a_sentence(start, arguments, parameters, code, sentence):
-    node = start(MODULE, *arguments, **parameters)
+def test_a_start_that_cannot_be_ends_with_a_sentence(start, arguments, code, sentence):
+    node = start(MODULE, *arguments)
     assert node.wait() == code
     assert sentence in node.output
     assert "Traceback" not in node.output

@@ -15,14 +15,6 @@ def stamps(collector) -> list[float]:
     return [round(seconds(m.transforms[0].header.stamp), 6) for m in collector.messages]
 
 
-def test_joint_states_are_throttled_by_their_stamps(tf, send):
-    _, collector = tf()
-    for stamp in (1.0, 1.01, 1.049, 1.05):
-        send(stamp, turn=0.0)
-    collector.wait_for(2)
-    assert stamps(collector) == [1.0, 1.05]
-
-
 def test_stamps_may_be_ignored(tf, send):
     _, collector = tf(ignore_timestamp=True)
     for stamp in (1.0, 1.0, 0.0):
