@@ -1,6 +1,7 @@
 """What browsers are told about calls, and the requests that their messages become."""
 
 import pytest
+from fake_channel import FakeBrowser, FakeChannel
 
 from arm_viewer.calls.call import (
     Callee,
@@ -11,37 +12,12 @@ from arm_viewer.calls.call import (
     PlaceCall,
 )
 from arm_viewer.calls.form import FieldKind, FormField
-from arm_viewer.channel import Message
 from arm_viewer.errors import BrowserMessageError
 from arm_viewer.panels.calls import Calls
 from arm_viewer.snapshot import Snapshot
 
 STOP = Callee(CallKind.SERVICE, "/stop", "std_srvs/srv/SetBool")
 MOVE = Callee(CallKind.ACTION, "/move", "control_msgs/action/FollowJointTrajectory")
-
-
-class FakeChannel:
-    """Stands for the channel."""
-
-    def __init__(self):
-        self.handlers, self.sent = {}, []
-
-    def on(self, kind, handler):
-        self.handlers[kind] = handler
-
-    def send(self, kind, fields, *, keep=False):
-        self.sent.append((kind, fields))
-
-
-class FakeBrowser:
-    """Stands for a browser."""
-
-    def __init__(self):
-        self.is_connected = True
-        self.told = []
-
-    def send(self, kind, fields):
-        self.told.append(fields)
 
 
 class Page:
@@ -57,9 +33,6 @@ class Page:
         numbered = {int(number.removeprefix("n")): state for number, state in calls.items()}
         self.panel.update(Snapshot(callees=(MOVE, STOP), calls=numbered))
 
-    def take(self, kind, browser, **fields):
-        self.channel.handlers[kind](Message(kind, fields), browser)
-
 
 @pytest.fixture
 def page():
@@ -68,7 +41,7 @@ def page():
 
 def place(page, browser, **fields):
     wanted = {"number": 7, "of": "service", "name": "/stop", "typed": {}, "rate_hz": 0} | fields
-    page.take("call_place", browser, **wanted)
+    page.channel.take("call_place", browser, **wanted)
 
 
 def test_what_can_be_called_is_listed_once(page):
@@ -79,7 +52,7 @@ def test_what_can_be_called_is_listed_once(page):
 
 def test_forms_and_calls_become_requests_with_numbers_of_their_own(page):
     first, second = FakeBrowser(), FakeBrowser()
-    page.take("call_form", first, number=7, of="service", name="/stop")
+    page.channel.take("call_form", first, number=7, of="service", name="/stop")
     place(page, second, typed={"data": "true"})
     assert page.requests == [OpenForm(1, STOP), PlaceCall(2, STOP, {"data": "true"}, 0.0)]
 
@@ -96,7 +69,7 @@ def test_each_browser_is_told_of_its_own_call_under_its_own_number(page):
 
 def test_a_form_is_sent_with_its_limits_as_text(page):
     browser = FakeBrowser()
-    page.take("call_form", browser, number=7, of="service", name="/stop")
+    page.channel.take("call_form", browser, number=7, of="service", name="/stop")
     field = FormField("data", "int64", FieldKind.INTEGER, str(2**62), -1, None)
     page.show(n1=CallState("", is_over=True, form=(field,)))
     (sent,) = browser.told[0]["form"]
@@ -106,9 +79,9 @@ def test_a_form_is_sent_with_its_limits_as_text(page):
 def test_a_browser_ends_its_own_call_and_no_other(page):
     mine, other = FakeBrowser(), FakeBrowser()
     place(page, mine)
-    page.take("call_end", other, number=7)
+    page.channel.take("call_end", other, number=7)
     assert len(page.requests) == 1
-    page.take("call_end", mine, number=7)
+    page.channel.take("call_end", mine, number=7)
     assert page.requests[1:] == [EndCall(1)]
 
 

@@ -3,27 +3,12 @@
 import base64
 
 import pytest
+from fake_channel import FakeBrowser, FakeChannel
 
 from arm_viewer.channel import Message
 from arm_viewer.errors import BrowserMessageError
 from arm_viewer.panels.file_drop import FileDrop
 from arm_viewer.world.dropped_file import MAX_BYTES, DroppedFile
-
-
-class FakeChannel:
-    """Stands for the channel."""
-
-    def on(self, kind, handler):
-        self.handler = handler
-
-
-class FakeBrowser:
-    """Stands for a browser."""
-
-    is_connected = True
-
-    def send(self, kind, fields):
-        self.told = fields
 
 
 class Drop:
@@ -32,7 +17,7 @@ class Drop:
     def __init__(self):
         channel, self.browser, self.taken = FakeChannel(), FakeBrowser(), []
         self.drop = FileDrop(channel, self.taken.append)
-        self.handler = channel.handler
+        self.handler = channel.handlers["file_part"]
 
     def part(self, data, offset=0, size=6, name="a.stl"):
         fields = {
@@ -54,7 +39,7 @@ def test_parts_become_a_file(drop):
     assert drop.taken == []
     drop.part(b"ef", 4)
     assert drop.taken == [DroppedFile("a.stl", b"abcdef")]
-    assert drop.browser.told == {"name": "a.stl", "bytes": 6, "of": 6}
+    assert drop.browser.told[-1] == {"name": "a.stl", "bytes": 6, "of": 6}
 
 
 @pytest.mark.parametrize(("data", "offset"), [(b"x", 3), (b"xyz", 4), (b"x", -1), (b"x", 1e300)])

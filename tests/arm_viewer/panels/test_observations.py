@@ -3,9 +3,9 @@
 import math
 
 import pytest
+from fake_channel import FakeChannel
 
 from arm_node.rigid_transform import RigidTransform
-from arm_viewer.channel import Message
 from arm_viewer.errors import BrowserMessageError
 from arm_viewer.panels.observations import Observations, diagnostic_rows, pose_fields
 from arm_viewer.requests import MeasureRates
@@ -53,21 +53,16 @@ def test_a_component_that_falls_silent_is_stale():
     ]
 
 
-class Listener:
-    """Stands for the channel, and for its only browser."""
+class Listener(FakeChannel):
+    """A channel whose browser asks for parts."""
 
     def __init__(self):
-        self.is_connected, self.sent, self.requests = True, [], []
-
-    def on(self, kind, handler, *, changes):
-        self.handler = handler
-
-    def send(self, kind, fields):
-        self.sent.append((kind, fields))
+        super().__init__()
+        self.requests = []
 
     def show(self, part, measures=False, frame="", within=""):
         fields = {"part": part, "measures": measures, "frame": frame, "within": within}
-        self.handler(Message("show_part", fields), self)
+        self.take("show_part", **fields)
 
     def read(self):
         sent, self.sent = self.sent, []

@@ -5,8 +5,8 @@ from types import MappingProxyType
 import cv2
 import numpy as np
 import pytest
+from fake_channel import FakeBrowser, FakeChannel
 
-from arm_viewer.channel import Message
 from arm_viewer.panels import picture_panel
 from arm_viewer.panels.picture_panel import PicturePanel
 from arm_viewer.snapshot import Picture, Snapshot
@@ -16,36 +16,6 @@ DEPTH = Picture("32FC1", 2, 1, 8, False, np.array([0.5, 2.0], np.float32).view(n
 ODD = Picture("yuv422", 2, 1, 4, False, np.zeros(4, np.uint8))
 
 
-class FakeChannel:
-    """Keeps what goes to every browser, and takes messages as a browser's."""
-
-    def __init__(self):
-        self.kept = {}
-        self.handlers = {}
-
-    def on(self, kind, handler, *, changes=True):
-        assert not changes
-        self.handlers[kind] = handler
-
-    def send(self, kind, fields, *, keep):
-        self.kept[kind] = fields
-
-
-class FakeBrowser:
-    """Keeps what it is sent; a slow one takes no frame."""
-
-    def __init__(self):
-        self.told, self.frames, self.is_slow = [], [], False
-
-    def send(self, kind, fields):
-        self.told.append(fields)
-
-    def send_bytes(self, kind, payload):
-        if not self.is_slow:
-            self.frames.append(payload)
-        return not self.is_slow
-
-
 class Page:
     """The panel with a browser."""
 
@@ -53,14 +23,13 @@ class Page:
         self.channel, self.browser = FakeChannel(), FakeBrowser()
         self.panel = PicturePanel(self.channel)
         self.panel.build(None)
+        assert not self.channel.changing
 
     def ask(self, topic="/colour", first=False):
-        message = Message("picture_next", {"topic": topic, "first": first})
-        self.channel.handlers["picture_next"](message, self.browser)
+        self.channel.take("picture_next", self.browser, topic=topic, first=first)
 
     def value(self, topic, column, row=0):
-        message = Message("picture_value", {"topic": topic, "column": column, "row": row})
-        self.channel.handlers["picture_value"](message, self.browser)
+        self.channel.take("picture_value", self.browser, topic=topic, column=column, row=row)
         return self.browser.told[-1]["text"]
 
     def show(self, **pictures):
@@ -106,10 +75,10 @@ def test_depth_comes_with_its_range(page):
 
 
 def test_a_slow_browser_gets_the_newest_picture_later(page):
-    page.browser.is_slow = True
+    page.browser.keeps_up = False
     page.ask()
     page.show(colour=COLOUR)
-    page.browser.is_slow = False
+    page.browser.keeps_up = True
     page.show(colour=COLOUR)
     assert len(page.browser.frames) == 1
 

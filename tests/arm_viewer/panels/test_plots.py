@@ -4,9 +4,9 @@ import struct
 
 import numpy as np
 import pytest
+from fake_channel import FakeChannel
 
 from arm_description.urdf.parser import parse_urdf
-from arm_viewer.channel import Message
 from arm_viewer.errors import BrowserMessageError
 from arm_viewer.panels.plots import PlotFeed, joint_curves
 from arm_viewer.plots.history import Curves
@@ -29,27 +29,8 @@ GRIPPER = """<robot name='r'><link name='palm'/><link name='left'/><link name='r
     <mimic joint='a'/></joint></robot>"""
 
 
-class Listener:
-    """Stands for the channel, and for its only browser."""
-
-    def __init__(self):
-        self.handlers, self.sent, self.frames = {}, [], []
-        self.is_connected = self.keeps_up = True
-
-    def on(self, kind, handler, *, changes):
-        assert not changes
-        self.handlers[kind] = handler
-
-    def send(self, kind, fields, *, keep=False):
-        self.sent.append((kind, fields))
-
-    def send_bytes(self, kind, payload):
-        if self.keeps_up:
-            self.frames.append(payload)
-        return self.keeps_up
-
-    def say(self, kind, **fields):
-        self.handlers[kind](Message(kind, fields), self)
+class Listener(FakeChannel):
+    """A channel whose browser reads curves."""
 
     def values(self, number=7):
         """Return all values of a curve that came, and forget them."""
@@ -78,20 +59,21 @@ def feed(listener, monkeypatch):
     monkeypatch.setattr("arm_viewer.panels.plots.PERIOD_S", 0.0)
     feed = PlotFeed(listener, lambda request: listener.sent.append(request))
     feed.build(None)
+    assert not listener.changing
     return feed
 
 
 def test_a_browser_gets_what_there_is_and_then_what_is_new(feed, listener):
     curves = Curves()
     curves.append(np.array([1.0, 2.0]), {NAME: np.array([0.5, 0.75])})
-    listener.say("plot_add", name=NAME, number=7)
+    listener.take("plot_add", name=NAME, number=7)
     feed.update(Snapshot(curves=curves))
     assert PlotCurves(frozenset({NAME})) in listener.sent
     assert listener.values() == [0.5, 0.75]
     curves.append(np.array([3.0]), {NAME: np.array([1.0])})
     feed.update(Snapshot(curves=curves))
     assert listener.values() == [1.0]
-    listener.say("plot_remove", number=7)
+    listener.take("plot_remove", number=7)
     curves.append(np.array([4.0]), {NAME: np.array([1.0])})
     feed.update(Snapshot(curves=curves))
     assert listener.values() == []
@@ -99,7 +81,7 @@ def test_a_browser_gets_what_there_is_and_then_what_is_new(feed, listener):
 
 def test_a_browser_that_lags_behind_misses_nothing(feed, listener):
     curves = Curves()
-    listener.say("plot_add", name=NAME, number=7)
+    listener.take("plot_add", name=NAME, number=7)
     listener.keeps_up = False
     curves.append(np.array([1.0]), {NAME: np.array([5.0])})
     feed.update(Snapshot(curves=curves))
@@ -114,7 +96,7 @@ def test_a_long_history_is_sent_thinned_but_with_its_peak(feed, listener):
     values = np.zeros(60_000)
     values[12_345] = 9.0
     curves.append(0.002 * np.arange(60_000), {NAME: values})
-    listener.say("plot_add", name=NAME, number=7)
+    listener.take("plot_add", name=NAME, number=7)
     feed.update(Snapshot(curves=curves))
     sent = listener.values()
     assert len(sent) < 9000
@@ -125,7 +107,7 @@ def test_curves_of_a_topic_share_their_times(feed, listener):
     curves = Curves()
     names = [f"/joint_states.position[{k}]" for k in range(8)]
     for number, name in enumerate(names):
-        listener.say("plot_add", name=name, number=number)
+        listener.take("plot_add", name=name, number=number)
     times = 0.002 * np.arange(500)
     curves.append(times, dict.fromkeys(names, times))
     feed.update(Snapshot(curves=curves))
@@ -138,7 +120,7 @@ def test_another_run_replaces_the_curves(feed, listener):
     before, after = Curves(), Curves()
     before.append(np.array([10.0]), {NAME: np.array([1.0])})
     after.append(np.array([5.0]), {NAME: np.array([2.0])})
-    listener.say("plot_add", name=NAME, number=7)
+    listener.take("plot_add", name=NAME, number=7)
     feed.update(Snapshot(curves=before))
     assert ("plot_restart", {}) not in listener.sent
     feed.update(Snapshot(curves=after))
@@ -149,14 +131,14 @@ def test_another_run_replaces_the_curves(feed, listener):
 def test_a_browser_that_leaves_gets_nothing_more(feed, listener):
     curves = Curves()
     curves.append(np.array([1.0]), {NAME: np.array([1.0])})
-    listener.say("plot_add", name=NAME, number=7)
+    listener.take("plot_add", name=NAME, number=7)
     listener.is_connected = False
     feed.update(Snapshot(curves=curves))
     assert listener.values() == []
 
 
 def test_whoever_asks_is_told_the_numbers_with_units(feed, listener):
-    listener.say("plot_numbers")
+    listener.take("plot_numbers")
     assert ListNumbers() in listener.sent
     feed.update(Snapshot(numbers={"/pose": ("pose.position.x", "pose.orientation.w"), "/x": ()}))
     told = {"topics": {"/pose": [["pose.position.x", "m"], ["pose.orientation.w", ""]]}}
@@ -166,7 +148,7 @@ def test_whoever_asks_is_told_the_numbers_with_units(feed, listener):
 @pytest.mark.parametrize("fields", [{"number": 1}, {"name": "x", "number": 1}, {"name": NAME}])
 def test_anything_but_a_curve_is_refused(feed, listener, fields):
     with pytest.raises(BrowserMessageError):
-        listener.say("plot_add", **fields)
+        listener.take("plot_add", **fields)
 
 
 def test_the_curves_of_the_joints_are_those_of_states_and_commands():

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from fake_channel import FakeChannel
 
 from arm_viewer.channel import Message
 from arm_viewer.errors import BrowserMessageError
@@ -147,30 +148,19 @@ def test_anything_else_is_refused_with_a_sentence(fields, problem):
         run_request(Message("run", fields), snapshot())
 
 
-class Listener:
-    """Stands for the channel; keeps what is sent."""
-
-    def __init__(self):
-        self.is_used = True
-        self.sent = []
-
-    def send(self, kind, fields, *, keep):
-        self.sent.append((kind, fields))
-
-
 def test_only_what_has_changed_is_sent():
-    listener = Listener()
+    listener = FakeChannel()
     bar = TimeBar(listener, send=lambda request: None)
     bar.update(snapshot())
     bar.update(snapshot())
-    assert [kind for kind, _ in listener.sent] == ["time_bar", "clock"]
+    assert listener.kinds == ["time_bar", "clock"]
     bar.update(snapshot("paused", control_answer=ControlAnswer(1, "no", False)))
     assert listener.sent[2][0] == "time_bar"
     assert listener.sent[2][1]["answer"] == {"number": 1, "text": "no", "done": False}
 
 
 def test_nothing_is_sent_without_a_browser_and_the_next_one_gets_everything():
-    listener = Listener()
+    listener = FakeChannel()
     bar = TimeBar(listener, send=lambda request: None)
     bar.update(snapshot())
     listener.is_used = False
@@ -179,4 +169,4 @@ def test_nothing_is_sent_without_a_browser_and_the_next_one_gets_everything():
     assert not listener.sent
     listener.is_used = True
     bar.update(snapshot("paused"))
-    assert [kind for kind, _ in listener.sent] == ["time_bar", "clock"]
+    assert listener.kinds == ["time_bar", "clock"]

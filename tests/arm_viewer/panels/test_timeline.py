@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from fake_channel import FakeChannel
 
-from arm_viewer.channel import Message
 from arm_viewer.errors import BrowserMessageError, PageRecordingError
 from arm_viewer.panels.timeline import TimelinePanel, curve_fields, timeline_fields
 from arm_viewer.recordings.curve import WholeCurve
@@ -12,26 +12,6 @@ from arm_viewer.recordings.open_recording import PlayerState, ShownCurve
 from arm_viewer.recordings.playback import Playback
 from arm_viewer.recordings.recorder import RecorderState
 from arm_viewer.snapshot import Snapshot
-
-
-class FakeChannel:
-    """Keeps what is sent, and takes messages as a browser's."""
-
-    def __init__(self):
-        self.sent = []
-        self.kept = {}
-        self._handlers = {}
-
-    def on(self, kind, handler, *, changes=True):
-        self._handlers[kind] = handler
-
-    def send(self, kind, fields, *, keep=False):
-        assert keep
-        self.sent.append(kind)
-        self.kept[kind] = fields
-
-    def take(self, kind, **fields):
-        self._handlers[kind](Message(kind, fields), None)
 
 
 class FakePlayer:
@@ -89,16 +69,17 @@ def page(tmp_path):
 def test_only_what_has_changed_is_sent(page):
     channel, player, _, panel = page
     assert channel.kept["timeline"]["name"] == ""
+    assert channel.kept.keys() == set(channel.kinds)
     channel.sent.clear()
     panel.update(Snapshot())
     assert channel.sent == []
     player.state = PlayerState(name="bag", length_s=10.0, time_s=2.5)
     panel.update(Snapshot())
-    assert channel.sent == ["timeline_moment", "timeline"]
+    assert channel.kinds == ["timeline_moment", "timeline"]
     channel.sent.clear()
     player.state = PlayerState(name="bag", length_s=10.0, time_s=3.0)
     panel.update(Snapshot())
-    assert channel.sent == ["timeline_moment"]
+    assert channel.kinds == ["timeline_moment"]
 
 
 def test_a_curve_is_sent_once_it_is_read(page):
@@ -107,7 +88,7 @@ def test_a_curve_is_sent_once_it_is_read(page):
     for shown in (ShownCurve("/a", "x"), ShownCurve("/a", "x", curve)):
         player.state = PlayerState(name="bag", curve=shown)
         panel.update(Snapshot())
-    assert channel.sent.count("timeline_curve") == 3
+    assert channel.kinds.count("timeline_curve") == 3
     assert channel.kept["timeline_curve"] == curve_fields(player.state.curve)
     assert channel.kept["timeline_curve"]["low"] == [1.0, None]
 

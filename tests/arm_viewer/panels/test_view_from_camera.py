@@ -3,9 +3,9 @@
 from types import SimpleNamespace
 
 import pytest
+from fake_channel import FakeBrowser, FakeChannel
 
 from arm_node.rigid_transform import RigidTransform
-from arm_viewer.channel import Message
 from arm_viewer.panels.view_from_camera import ViewFromCamera, camera_of
 from arm_viewer.snapshot import CameraView, Snapshot
 
@@ -16,34 +16,22 @@ ONE_UP = RigidTransform((0.0, 0.0, 1.0))
 AHEAD = RigidTransform((0.0, 0.0, 1.0), (-0.5, 0.5, -0.5, 0.5))
 
 
-class FakeBrowser:
-    """Keeps what it is told."""
-
-    def __init__(self):
-        self.told, self.is_connected = [], True
-
-    def send(self, kind, fields):
-        assert kind == "view_from_pose"
-        self.told.append(fields)
-
-
 class Page:
     """The panel, the poses of its frames, and a browser."""
 
     def __init__(self):
-        self.handlers, self.browser, self.known = {}, FakeBrowser(), {"side_optical": AHEAD}
-        self.panel = ViewFromCamera(self, SimpleNamespace(known=self.known))
+        self.channel, self.browser = FakeChannel(), FakeBrowser()
+        self.known = {"side_optical": AHEAD}
+        self.panel = ViewFromCamera(self.channel, SimpleNamespace(known=self.known))
         self.panel.build(None)
-
-    def on(self, kind, handler, *, changes):
-        assert not changes
-        self.handlers[kind] = handler
+        assert not self.channel.changing
 
     def ask(self, topic):
-        self.handlers["view_from"](Message("view_from", {"topic": topic}), self.browser)
+        self.channel.take("view_from", self.browser, topic=topic)
 
     def update(self, view=SIDE):
         self.panel.update(Snapshot(cameras={"/side/camera_info": view}))
+        assert {kind for kind, _ in self.browser.sent} <= {"view_from_pose"}
         return self.browser.told
 
 
