@@ -40,6 +40,7 @@ class Approach:
         self._body = model.geom_bodyid.tolist()
         self._root = model.body_rootid[model.geom_bodyid].tolist()
         self._radius = model.geom_rbound.tolist()
+        self._velocities, self._middles, self._points = data.cvel, data.geom_xpos, data.subtree_com
         self._change = np.zeros(model.nv)
         self._accelerations: list[float] = []
 
@@ -97,13 +98,12 @@ class Approach:
     def _speed(self, first: int, second: int) -> float:
         """Return a bound of the speed of the second geom's points relative to the first's body."""
         # MuJoCo gives all velocities of a tree at one point. On so few numbers NumPy is slower.
-        velocities = self._data.cvel
+        velocities = self._velocities
         wx, wy, wz, vx, vy, vz = velocities[self._body[second]].tolist()
         if self._part[first]:
             ax, ay, az, bx, by, bz = velocities[self._body[first]].tolist()
             wx, wy, wz, vx, vy, vz = wx - ax, wy - ay, wz - az, vx - bx, vy - by, vz - bz
-        middle = self._data.geom_xpos[second] - self._data.subtree_com[self._root[second]]
-        x, y, z = middle.tolist()
+        x, y, z = (self._middles[second] - self._points[self._root[second]]).tolist()
         ux, uy, uz = vx + wy * z - wz * y, vy + wz * x - wx * z, vz + wx * y - wy * x
         return sqrt(ux * ux + uy * uy + uz * uz) + self._radius[second] * sqrt(
             wx * wx + wy * wy + wz * wz

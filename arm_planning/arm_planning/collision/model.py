@@ -18,8 +18,6 @@ from arm_planning.scene.scene import PlanningScene
 
 Array = NDArray[np.float64]
 
-ORDER = {BodyKind.ROBOT_LINK: 0, BodyKind.ROBOT_ATTACHED: 1, BodyKind.WORLD_OBJECT: 2}
-
 
 class CollisionModel:
     """Tells which states of a robot collide, with itself or with the objects of a scene.
@@ -66,6 +64,7 @@ class CollisionModel:
         self._posed = PosedScene(self._compiled)
         self._model, self._data = self._posed.model, self._posed.data
         self._constant = self._constant_contacts()
+        self._posed.leave_out_apart()
 
     @property
     def constant_contacts(self) -> tuple[CollisionContact, ...]:

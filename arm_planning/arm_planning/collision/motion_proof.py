@@ -32,7 +32,7 @@ MAX_STATES = 20_000
 """Most states that a proof of one path looks at, about a second."""
 FIRST_MARGIN_M = 0.05
 STEP_OF_MARGINS = 1.4
-LOOK_AHEAD = 2.0
+LOOK_AHEAD = 1.3
 """Factor of an interval by `reach` for which distances are found in the next state: speeds seldom
 prove more, and farther bodies cost time."""
 WORTH_SPEEDS = 16
@@ -88,7 +88,7 @@ class MotionProof:
         self._scale = np.abs(self._posed.coordinates.matrix)
         self._range = self._limits()
         self._slides = self._model.jnt_type == int(mujoco.mjtJoint.mjJNT_SLIDE)
-        self._usual = reach(self._model, *self._range)
+        self._usual = reach(self._model, self._data, *self._range)
         self._states = 0
         self._margin_m = FIRST_MARGIN_M
         self._ends: tuple[Array, Array] = (self._range[0], self._range[0])
@@ -161,12 +161,13 @@ class MotionProof:
         self._approach = Approach(model, self._data, bounds)
         self._part_of = bounds.part.tolist()
         first, second = bounds.part[model.pair_geom1], bounds.part[model.pair_geom2]
-        # MuJoCo adds the margins of two geoms, so those of what is fixed stay 0.
-        self._margins = (
-            (model.pair_margin, first * self._count + second),
-            (model.geom_margin, bounds.part * self._count),
-            (model.body_margin, bounds.part_of_body * self._count),
-        )
+        self._margins = [(model.pair_margin, first * self._count + second)]
+        if (model.body_contype | model.body_conaffinity).any():
+            # MuJoCo adds the margins of two geoms, so those of what is fixed stay 0.
+            self._margins += [
+                (model.geom_margin, bounds.part * self._count),
+                (model.body_margin, bounds.part_of_body * self._count),
+            ]
 
     def _limits(self) -> Array:
         """Return the ranges of MuJoCo's coordinates within finite limits, (2, nq)."""
@@ -185,7 +186,7 @@ class MotionProof:
         high = np.maximum(positions.max(axis=0) + spread, self._range[1])
         beyond = (low < self._range[0]) | (high > self._range[1])
         if (beyond & self._slides).any():
-            self._set_reach(reach(self._model, low, high))
+            self._set_reach(reach(self._model, self._data, low, high))
         elif self._reach is not self._usual:
             self._set_reach(self._usual)
 
@@ -227,6 +228,7 @@ class MotionProof:
         nearest = self._searcher(rates, lost, floors)
         self._approach.begin(change)
         model, data, qpos = self._model, self._data, self._data.qpos
+        place, look, add_scaled = mujoco.mj_kinematics, mujoco.mj_collision, mujoco.mju_addScl
         proved, guess = 0.0, min(1.0, self._margin_m / fastest)
         # Proved intervals farther on; what lies before them is not.
         ahead: list[tuple[float, float]] = []
@@ -236,10 +238,9 @@ class MotionProof:
             if self._states > MAX_STATES:
                 return Obstruction(segment, at, None, f"not proved with {MAX_STATES} states")
             horizon = set_margins(1.2 * guess)
-            np.multiply(change, at, out=qpos)
-            np.add(qpos, start, out=qpos)
-            mujoco.mj_kinematics(model, data)
-            mujoco.mj_collision(model, data)
+            add_scaled(qpos, start, change, at)
+            place(model, data)
+            look(model, data)
             near, is_close = nearest(horizon)
             if is_close:
                 obstruction = self._obstruction(segment, at, lost, floors)
@@ -268,6 +269,8 @@ class MotionProof:
 
         def set_margins(least: float) -> float:
             nonlocal last
+            if last / STEP_OF_MARGINS < least <= last:
+                return last
             step = ceil(log(max(least, LEAST_PART), STEP_OF_MARGINS))
             horizon = min(STEP_OF_MARGINS**step, 1.0)
             if horizon != last:

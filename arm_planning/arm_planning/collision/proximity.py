@@ -27,8 +27,10 @@ class Proximity:
         # MuJoCo adds the margins of two geoms, so those of what is fixed stay 0.
         self._moving_bodies = self._model.body_weldid > 0
         self._moving_geoms = self._moving_bodies[self._model.geom_bodyid]
-        self._contype = np.zeros_like(self._model.body_contype)
-        np.bitwise_or.at(self._contype, self._model.geom_bodyid, self._model.geom_contype)
+        self._bits = (
+            (self._model.body_contype, self._model.geom_contype),
+            (self._model.body_conaffinity, self._model.geom_conaffinity),
+        )
 
     def near(self, q: Array, within_m: float) -> Mapping[int, float]:
         """Return the distance of each pair of bodies that is near, in m; negative in contact.
@@ -42,13 +44,16 @@ class Proximity:
         """
         self._posed.place(q)
         self._set_margins(within_m)
-        # What is out of reach may still be near.
-        left_out, self._model.body_contype[:] = self._model.body_contype.copy(), self._contype
+        # What never touches may still be near.
+        left_out = [of_bodies.copy() for of_bodies, _ in self._bits]
+        for of_bodies, of_geoms in self._bits:
+            np.bitwise_or.at(of_bodies, self._model.geom_bodyid, of_geoms)
         try:
             mujoco.mj_collision(self._model, self._data)
         finally:
             self._set_margins(0.0)
-            self._model.body_contype[:] = left_out
+            for (of_bodies, _), bits in zip(self._bits, left_out, strict=True):
+                of_bodies[:] = bits
         if not self._data.ncon:
             return {}
         found = self._data.contact

@@ -18,7 +18,6 @@ from arm_node.names import describe_known
 from arm_planning.collision.contact import BodyKind
 from arm_planning.collision.geoms import CUBE, Geom, link_geoms, object_geoms, object_placement
 from arm_planning.collision.mesh_pieces import MeshPieces
-from arm_planning.collision.reach import out_of_reach
 from arm_planning.collision.scene_difference import same_robot, same_shapes
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematic_tree import PositionMap, kinematic_tree, position_map
@@ -36,7 +35,8 @@ CCD_ITERATIONS = 100
 CCD_TOLERANCE = 1e-6
 """With these distances are within 0.01 um, with 1e-5 within 7 um and hardly faster."""
 MAX_NAMED_PAIRS = 500
-"""MuJoCo looks at each named pair in each state, which takes some 20 ns; unnamed ones it sorts."""
+"""MuJoCo looks at each named pair in each state, which takes some 20 ns; unnamed ones it searches
+for among all bodies."""
 MEMORY_BYTES = 1 << 23
 """Room for some thousands of contacts."""
 MOST_GONE = 20
@@ -256,10 +256,7 @@ class SceneCompiler:
         )
 
     def _set_bits(self, model: mujoco.MjModel, bodies: tuple[CollisionBody | None, ...]) -> None:
-        """Give geoms the bits that decide what they touch; objects that are gone touch nothing.
-
-        Bodies without bits of their own are not looked at: they are gone, or out of reach.
-        """
+        """Give geoms the bits that decide what they touch; objects that are gone touch nothing."""
         objects = self._scene.objects
         is_gone = np.array(
             [
@@ -273,9 +270,6 @@ class SceneCompiler:
         model.body_contype[:] = model.body_conaffinity[:] = 0
         np.bitwise_or.at(model.body_contype, model.geom_bodyid, model.geom_contype)
         np.bitwise_or.at(model.body_conaffinity, model.geom_bodyid, model.geom_conaffinity)
-        # MuJoCo sorts all other bodies in each state.
-        far = out_of_reach(model)
-        model.body_contype[far] = model.body_conaffinity[far] = 0
 
     def _set_options(self) -> None:
         option, compiler = self._spec.option, self._spec.compiler
@@ -428,8 +422,6 @@ class SceneCompiler:
             for number, (geom, _) in enumerate(part.geoms):
                 geom.name = f"{number} of {part.body.name}"
         for first, second in checked:
-            # MuJoCo looks at named pairs though their bodies are left out of its own search.
-            self._spec.add_exclude(bodyname1=first.body.name, bodyname2=second.body.name)
             for a, b in product(inner[id(first)], inner[id(second)]):
                 self._spec.add_pair(geomname1=a.name, geomname2=b.name)
 

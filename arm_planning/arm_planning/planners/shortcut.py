@@ -82,7 +82,7 @@ def _cut(corner: Array, space: Space) -> Array | None:
         if around - length(b - a) < LEAST_CUT:
             return None
         states = space.connect(a, b)
-        if states is not None and path_length(np.vstack([a, states])) < around:
+        if states is not None and _length_over(a, states) < around:
             return states[:-1] if share == 1.0 else np.vstack([a, states])
     return None
 
@@ -95,7 +95,7 @@ def _without_detours(path: Array, space: Space, deadline: Deadline) -> Array:
         for ahead in range(len(path) - 1, at + 1, -1):
             deadline.check(DOING)
             states = space.connect(path[at], path[ahead])
-            if states is not None and path_length(np.vstack([path[at], states])) <= path_length(
+            if states is not None and _length_over(path[at], states) <= path_length(
                 path[at : ahead + 1]
             ):
                 kept.append(states)
@@ -121,9 +121,15 @@ def _shortcut(path: Array, space: Space, parts: Array) -> Array | None:
     if second - first - length(b - a) < GAIN * total:
         return None
     states = space.connect(a, b)
-    if states is None or path_length(np.vstack([a, states])) >= second - first:
+    if states is None or _length_over(a, states) >= second - first:
         return None
     return np.concatenate([path[: before + 1], a[None, :], states, path[after + 1 :]])
+
+
+def _length_over(start: Array, states: Array) -> float:
+    """Return the length of the way from a state, (n,), over others, (k, n); mostly there is one."""
+    first = length(states[0] - start)
+    return first if len(states) == 1 else first + path_length(states)
 
 
 def _point(path: Array, lengths: Array, index: int, at: float) -> Array:

@@ -46,7 +46,7 @@ class Arm:
         checker = arm_at_balls(slider, shape)
         self.posed, self.model, self.data = checker.posed, checker.posed.model, checker.posed.data
         self.lower, self.upper = np.array([checker.limits(name) for name in checker.joints]).T
-        self.bounds = reach(self.model, self.lower, self.upper)
+        self.bounds = reach(self.model, self.data, self.lower, self.upper)
         self.approach = Approach(self.model, self.data, self.bounds)
         part = self.bounds.part
         self.last = int(part.argmax())

@@ -10,7 +10,7 @@ from robots import joint, link, robot
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.proximity import Proximity
-from arm_planning.collision.reach import MANY, out_of_reach
+from arm_planning.collision.reach import MANY, never_touching
 from arm_planning.scene.objects import CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.shapes import Plane, Sphere
@@ -40,7 +40,7 @@ def model(
 
 def is_left_out(model: CollisionModel) -> bool:
     names = [body.name if body is not None else "" for body in model.posed.bodies]
-    return bool(out_of_reach(model.posed.model)[names.index("thing")])
+    return bool(never_touching(model.posed.model, model.posed.data)[names.index("thing")])
 
 
 @pytest.mark.parametrize(
@@ -72,3 +72,13 @@ def test_what_is_out_of_reach_may_be_near():
     near = Proximity(far).near(np.zeros(1), 0.05)
     assert list(near.values()) == pytest.approx([0.03])
     assert far.is_free(np.zeros(1))
+
+
+def test_an_arm_alone_finds_itself_though_no_body_is_searched_for():
+    links = link("base", BALL), link("rod"), link("tip", BALL)
+    joints = joint("turn", "base", "rod"), joint("bend", "rod", "tip", axis="0 1 0", xyz="0 0 0.3")
+    robot_model = model_of(robot(*links, *joints), arm=(("turn", "bend"), "tip"))
+    alone = CollisionModel(robot_model, PlanningScene({}), "arm")
+    assert not alone.posed.model.body_contype.any()
+    assert alone.is_free(np.zeros(2))
+    assert not alone.is_free(np.array([0.0, 0.5]))
