@@ -157,12 +157,9 @@ def _joints(model: "PlanningModel", group: "JointGroup", words: list[str]) -> di
 
 def _request(group: "JointGroup", goal_constraints: Any, options: argparse.Namespace) -> Any:
     """Return the action's goal."""
-    from moveit_msgs.action import MoveGroup
+    from arm_planning.ros.goal_messages import move_goal, plan_message
 
-    from arm_planning.ros.goal_messages import plan_message
-
-    goal = MoveGroup.Goal()
-    goal.request = plan_message(
+    asked = plan_message(
         group.name,
         goal_constraints,
         planner_id=options.planner,
@@ -172,10 +169,7 @@ def _request(group: "JointGroup", goal_constraints: Any, options: argparse.Names
         max_velocity_scaling_factor=options.speed,
         max_acceleration_scaling_factor=options.acceleration,
     )
-    goal.planning_options.plan_only = options.plan_only
-    goal.planning_options.planning_scene_diff.is_diff = True
-    goal.planning_options.planning_scene_diff.robot_state.is_diff = True
-    return goal
+    return move_goal(asked, plan_only=options.plan_only)
 
 
 def _summary(result: Any, group: "JointGroup") -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from geometry_msgs.msg import Pose
+from moveit_msgs.action import MoveGroup
 from moveit_msgs.msg import (
     Constraints,
     JointConstraint,
@@ -26,6 +27,15 @@ def plan_message(group: str, goal: Constraints, **fields: float | int | str) -> 
     request = MotionPlanRequest(group_name=group, goal_constraints=[goal], **fields)
     request.start_state.is_diff = True
     return request
+
+
+def move_goal(request: MotionPlanRequest, *, plan_only: bool) -> MoveGroup.Goal:
+    """Return the goal of move_action: a request in the present scene."""
+    goal = MoveGroup.Goal(request=request)
+    options = goal.planning_options
+    options.plan_only = plan_only
+    options.planning_scene_diff.is_diff = options.planning_scene_diff.robot_state.is_diff = True
+    return goal
 
 
 def joint_goal(positions: Mapping[str, float]) -> Constraints:

@@ -13,7 +13,7 @@ from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import joint_positions, trajectory_of
-from arm_planning.ros.goal_messages import joint_goal, plan_message
+from arm_planning.ros.goal_messages import joint_goal, move_goal, plan_message
 from arm_viewer.planned_path import PlannedPath, planned_path
 from arm_viewer.planning import Activity, GoalState, ShownPlan
 from arm_viewer.planning_requests import PlanMotion
@@ -174,8 +174,7 @@ class MotionCaller:
 
 
 def _move_goal(goal: GoalState, request: PlanMotion) -> MoveGroup.Goal:
-    message = MoveGroup.Goal()
-    message.request = plan_message(
+    asked = plan_message(
         goal.group,
         joint_goal(goal.positions),
         num_planning_attempts=1,
@@ -183,11 +182,7 @@ def _move_goal(goal: GoalState, request: PlanMotion) -> MoveGroup.Goal:
         max_velocity_scaling_factor=request.velocity,
         max_acceleration_scaling_factor=request.acceleration,
     )
-    options = message.planning_options
-    options.plan_only = not request.executes
-    options.planning_scene_diff.is_diff = True
-    options.planning_scene_diff.robot_state.is_diff = True
-    return message
+    return move_goal(asked, plan_only=not request.executes)
 
 
 def _failure(code: Any) -> str:

@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Iterator
+from functools import partial
 from typing import Any, Generic, TypeVar
 
 from rclpy.node import Node
@@ -113,18 +114,16 @@ class TopicGroup(Generic[Message]):
     ) -> None:
         """Subscribe to the topic in the root namespace."""
         self._node = node
-        self._polled = polled
         self._message_class = message_class
         self._suffix = f"/{word}"
-        self._profile = profile
-        self._readers: dict[str, TopicReader[Message]] = {}
-        self._subscribe(self._suffix)
+        self._reader = partial(TopicReader, node, polled, message_class, profile=profile)
+        self._readers: dict[str, TopicReader[Message]] = {self._suffix: self._reader(self._suffix)}
 
     def discover(self, topics: TopicTypes) -> None:
         """Subscribe to new topics, and check the others for publishers that have disappeared."""
         for topic in topics_of(self._message_class, topics, self._node) - self._readers.keys():
             if topic.endswith(self._suffix):
-                self._subscribe(topic)
+                self._readers[topic] = self._reader(topic)
         now_s = time.monotonic()
         for reader in self._readers.values():
             reader.look_for_publishers(now_s)
@@ -132,8 +131,3 @@ class TopicGroup(Generic[Message]):
     def readers(self) -> Iterator[TopicReader[Message]]:
         """Yield the readers."""
         yield from self._readers.values()
-
-    def _subscribe(self, topic: str) -> None:
-        self._readers[topic] = TopicReader(
-            self._node, self._polled, self._message_class, topic, self._profile
-        )
