@@ -17,6 +17,7 @@ _HASH = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], n
 """Odd factors that hash three numbers to 64 bits."""
 Color = tuple[float, float, float, float]
 Scale = tuple[float, float, float]
+UNSCALED: Scale = (1.0, 1.0, 1.0)
 
 
 @frozen

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.errors import MeshFileError
-from arm_description.mesh.data import MeshData, Scale
+from arm_description.mesh.data import UNSCALED, MeshData, Scale
 from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh.simplification import outermost, simplified
 from arm_node.frozen import frozen
@@ -58,7 +58,9 @@ class MeshPart:
         Raises:
             MeshError: the part is too large or too small for MuJoCo's arithmetic.
         """
-        part = replace(self, drawn=self.drawn.scaled(scale), hull=self.hull * scale)
+        part = self
+        if scale != UNSCALED:
+            part = replace(self, drawn=self.drawn.scaled(scale), hull=self.hull * scale)
         farthest = float(np.abs(part.hull).max())
         size = float(np.ptp(part.hull, axis=0).max())
         if not farthest < MAX_EXTENT_M:

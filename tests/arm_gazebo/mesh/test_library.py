@@ -2,6 +2,7 @@
 
 import mujoco
 import pytest
+import trimesh
 
 from arm_description import ResourceFinder
 from arm_description.mesh.file import read_mesh_file
@@ -25,3 +26,13 @@ def test_an_unusable_file_is_read_once_and_named_at_each_use(tmp_path, monkeypat
         with pytest.raises(MeshError, match=r"cannot use the mesh .*box\.stl: a text STL"):
             use(box)
     assert read == [tmp_path / "box.stl"]
+
+
+def test_a_mesh_is_read_and_scaled_once(tmp_path):
+    trimesh.creation.box([1.0, 1.0, 1.0]).export(tmp_path / "box.stl")
+    meshes = library.MeshLibrary(mujoco.MjSpec(), ResourceFinder(None))
+    (part,) = meshes.parts(Mesh(str(tmp_path / "box.stl")))
+    (larger,) = meshes.parts(Mesh(str(tmp_path / "box.stl"), scale=(2.0, 1.0, 1.0)))
+    assert meshes.parts(Mesh(str(tmp_path / "box.stl")))[0] is part
+    assert part.bounds[1].tolist() == [0.5, 0.5, 0.5]
+    assert larger.bounds[1].tolist() == [1.0, 0.5, 0.5]
