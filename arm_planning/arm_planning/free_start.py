@@ -1,4 +1,4 @@
-"""Prints where the joints of a robot start so that it does not touch itself, as JSON.
+"""Prints where the joints of a robot start so that it touches nothing, as JSON.
 
     python -m arm_planning.free_start PACKAGE_PATH < ROBOT.urdf
 

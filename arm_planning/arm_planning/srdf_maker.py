@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.urdf.robot import Box, Capsule, Collision, Cylinder, Robot, Sphere
+from arm_node.rigid_transform import RigidTransform
+from arm_planning.collision.contact import CollisionContact
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.model import CollisionModel
 from arm_planning.robot.build import planning_model
@@ -19,7 +21,9 @@ from arm_planning.robot.default_srdf import default_srdf
 from arm_planning.robot.model import PlanningModel
 from arm_planning.robot.srdf import Pair, Srdf
 from arm_planning.scene.allowed_collisions import allowed_collisions
+from arm_planning.scene.objects import CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
+from arm_planning.scene.shapes import Plane
 
 Array = NDArray[np.float64]
 
@@ -39,6 +43,8 @@ HOME_SAMPLES = 2_000
 HOME_CLEARANCE_M = 0.005
 """How far apart links are at such a home, if possible: a servo does not hold an arm exactly."""
 HOME_DIGITS = 2
+FLOOR = "<floor>"
+"""The plane below the root, on which a robot stands in the simulation."""
 
 Warn = Callable[[str], None]
 
@@ -68,7 +74,7 @@ def make_srdf(
     pieces = meshes or MeshPieces()
     srdf = default_srdf(robot)
     pairs = dict.fromkeys(_joined(robot), "Adjacent")
-    sampler = _Sampler(robot, srdf, pieces, np.random.default_rng(0))
+    sampler = _Sampler(robot, srdf, pieces)
     pairs |= dict.fromkeys(sampler.always(pairs), "Always")
     pairs |= dict.fromkeys(sampler.gripping(pairs), "Default")
     touching = sampler.ever(pairs, samples)
@@ -80,22 +86,21 @@ def make_srdf(
 
 
 def free_start(robot: Robot, meshes: MeshPieces | None = None) -> dict[str, float]:
-    """Return where the joints start so that the robot does not touch itself: home, as it is made.
+    """Return where the joints start so that the robot touches neither itself nor the floor: home.
 
-    Empty if it does not touch itself with all joints at zero, or their limits nearest to it; and if
-    there is no other home. It is much faster than `make_srdf`.
+    Empty if it is so with all joints at zero, or their limits nearest to it; and if there is no
+    other home. It is much faster than `make_srdf`.
 
     Args:
-        robot: the robot.
+        robot: the robot, on the floor.
         meshes: cuts meshes, as for `CollisionModel`.
 
     Raises:
         PlanningError: a mesh cannot be used.
     """
-    srdf = default_srdf(robot)
-    sampler = _Sampler(robot, srdf, meshes or MeshPieces(), np.random.default_rng(0))
+    sampler = _Sampler(robot, default_srdf(robot), meshes or MeshPieces())
     pairs = dict.fromkeys(_joined(robot), "Adjacent")
-    if sampler.is_free_at_home(pairs):
+    if not sampler.contacts_at_home(pairs):
         return {}
     pairs |= dict.fromkeys(sampler.always(pairs), "Always")
     pairs |= dict.fromkeys(sampler.gripping(pairs), "Default")
@@ -110,20 +115,18 @@ class _Sampler:
         robot: the robot.
         srdf: its groups.
         meshes: cuts meshes.
-        rng: where the states come from.
     """
 
     robot: Robot
     srdf: Srdf
     meshes: MeshPieces
-    rng: np.random.Generator
 
-    def always(self, known: Mapping[Pair, str]) -> set[Pair]:
+    def always(self, known: Mapping[Pair, str], *, with_floor: bool = False) -> set[Pair]:
         """Return the pairs that touch in nearly all states."""
         model = self._model(self.robot)
-        collisions = self._collisions(model, known)
+        collisions = self._collisions(model, known, with_floor=with_floor)
         counts: dict[Pair, int] = {}
-        for q in self._states(model, FIRST_SAMPLES, self.rng):
+        for q in self._states(model, FIRST_SAMPLES):
             for pair in _touching(collisions, q):
                 counts[pair] = counts.get(pair, 0) + 1
         return {pair for pair, count in counts.items() if count >= ALWAYS * FIRST_SAMPLES}
@@ -151,7 +154,7 @@ class _Sampler:
         found: set[Pair] = set()
         collisions = self._collisions(model, known)
         before = 0
-        for number, q in enumerate(self._states(model, samples, self.rng)):
+        for number, q in enumerate(self._states(model, samples)):
             if number % BATCH == 0 and len(found) > before:
                 before = len(found)
                 collisions = self._collisions(model, {**known, **dict.fromkeys(found, "")})
@@ -170,10 +173,10 @@ class _Sampler:
         }
         return replace(srdf, states=renewed)
 
-    def is_free_at_home(self, known: Mapping[Pair, str]) -> bool:
-        """Return whether no other pair touches at home."""
+    def contacts_at_home(self, known: Mapping[Pair, str]) -> tuple[CollisionContact, ...]:
+        """Return what other pairs touch at home, the floor among them."""
         model = self._model(self.robot)
-        return self._collisions(model, known).is_free(self._home(model))
+        return self._collisions(model, known, with_floor=True).contacts(self._home(model))
 
     def free_home(self, known: Mapping[Pair, str], warn: Warn) -> dict[str, float]:
         """Return positions of all joints where no other pair touches; empty if home is so.
@@ -181,15 +184,20 @@ class _Sampler:
         As few joints as possible are moved. What collides is told; if it does in every state that
         is looked at, the result is empty, too.
         """
-        model = self._model(self.robot)
-        collisions, home = self._collisions(model, known), self._home(model)
-        contacts = collisions.contacts(home)
+        contacts = self.contacts_at_home(known)
+        if any(FLOOR in (contact.first, contact.second) for contact in contacts):
+            # A robot that cannot leave the floor stands on it.
+            known = {**known, **dict.fromkeys(self.always(known, with_floor=True), "Always")}
+            contacts = self.contacts_at_home(known)
         if not contacts:
             return {}
-        free = self._free_near(home, model, collisions)
+        model = self._model(self.robot)
+        free = self._free_near(self._home(model), model, known)
         what = "set another state" if free is None else "home is moved to a state without contact"
         for contact in contacts:
-            warn(f"at home {contact}: {what}; if the two may touch, disable their collisions")
+            is_own = FLOOR not in (contact.first, contact.second)
+            advice = "; if the two may touch, disable their collisions" if is_own else ""
+            warn(f"at home {contact}: {what}{advice}")
         return {} if free is None else dict(zip(model.joints, free.tolist(), strict=True))
 
     def _home(self, model: PlanningModel) -> Array:
@@ -199,17 +207,17 @@ class _Sampler:
         return np.array([positions.get(joint, 0.0) for joint in model.joints])
 
     def _free_near(
-        self, home: Array, model: PlanningModel, collisions: CollisionModel
+        self, home: Array, model: PlanningModel, known: Mapping[Pair, str]
     ) -> Array | None:
         """Return a free state near home, with round numbers; the same ones for the same robot."""
-        rng = np.random.default_rng(0)
         reaches = np.linspace(0.0, 1.0, HOME_SAMPLES)[:, None]
-        states = home + reaches * (np.array([*self._states(model, HOME_SAMPLES, rng)]) - home)
-        for clearance_m in (HOME_CLEARANCE_M, 0.0):
-
-            def is_free(q: Array, clearance_m: float = clearance_m) -> bool:
-                return collisions.free_count(q[None], clearance_m) == 1
-
+        states = home + reaches * (np.array([*self._states(model, HOME_SAMPLES)]) - home)
+        for with_floor, clearance_m in (
+            (True, HOME_CLEARANCE_M),
+            (False, HOME_CLEARANCE_M),
+            (False, 0.0),
+        ):
+            is_free = self._free_from(model, known, with_floor, clearance_m)
             if (free := next(filter(is_free, states), None)) is not None:
                 for index in range(len(home)):
                     less = free.copy()
@@ -220,12 +228,25 @@ class _Sampler:
                 return inside if is_free(inside) else free
         return None
 
+    def _free_from(
+        self, model: PlanningModel, known: Mapping[Pair, str], with_floor: bool, clearance_m: float
+    ) -> Callable[[Array], bool]:
+        collisions = self._collisions(model, known, with_floor=with_floor)
+        return lambda q: collisions.free_count(q[None], clearance_m) == 1
+
     def _model(self, robot: Robot) -> PlanningModel:
         return planning_model(robot, self.srdf, warn=_ignore)
 
-    def _collisions(self, model: PlanningModel, pairs: Mapping[Pair, str]) -> CollisionModel:
-        allowed = allowed_collisions(replace(self.srdf, disabled=pairs))
+    def _collisions(
+        self, model: PlanningModel, pairs: Mapping[Pair, str], *, with_floor: bool = False
+    ) -> CollisionModel:
+        """Return the checks of all pairs but these, and of what moves against the floor."""
+        standing = {(FLOOR, link): "" for link in _fixed(self.robot)} if with_floor else {}
+        allowed = allowed_collisions(replace(self.srdf, disabled={**pairs, **standing}))
         scene = PlanningScene(dict.fromkeys(model.joints, 0.0), allowed=allowed)
+        if with_floor:
+            floor = CollisionObject(FLOOR, RigidTransform(), (PlacedShape(Plane(0, 0, 1, 0)),))
+            scene = replace(scene, objects={FLOOR: floor})
         return CollisionModel(model, scene, meshes=self.meshes)
 
     def _limits(self, model: PlanningModel) -> tuple[Array, Array]:
@@ -236,10 +257,9 @@ class _Sampler:
         lower = np.where(np.isfinite(lower), lower, -np.pi)
         return lower, np.where(np.isfinite(upper), upper, np.pi)
 
-    def _states(
-        self, model: PlanningModel, count: int, rng: np.random.Generator
-    ) -> Iterator[Array]:
-        """Yield states of all joints, (n,)."""
+    def _states(self, model: PlanningModel, count: int) -> Iterator[Array]:
+        """Yield states of all joints, (n,): the same ones each time."""
+        rng = np.random.default_rng(0)
         lower, upper = self._limits(model)
         shares = rng.uniform(-AT_LIMITS / 2, 1.0 + AT_LIMITS / 2, (count, len(lower)))
         yield from lower + (upper - lower) * np.clip(shares, 0.0, 1.0)
@@ -262,6 +282,12 @@ def _joined(robot: Robot) -> Iterator[Pair]:
             above = carriers.get(above)
         if above is not None:
             yield min(link, above), max(link, above)
+
+
+def _fixed(robot: Robot) -> set[str]:
+    """Return the links that no joint moves."""
+    moved = [joint.name for joint in robot.joints if joint.type.is_scalar]
+    return {link.name for link in robot.links} - _carried_by(robot, moved)
 
 
 def _carried_by(robot: Robot, joints: Sequence[str]) -> set[str]:

@@ -82,8 +82,32 @@ def test_a_robot_that_touches_itself_at_zero_starts_at_the_home_of_its_srdf():
     assert {joint: (q,) for joint, q in start.items()} == made()[0].states["arm", "home"]
 
 
+def test_a_robot_that_is_in_the_floor_at_zero_starts_above_it():
+    low = robot(
+        ball("base", 0.1),
+        ball("arm", 0.1, x=0.5),
+        joint("bend", "base", "arm", xyz="0 0 0.08", axis="0 1 0", limits=(-1.0, 1.0)),
+    )
+    (angle,) = free_start(parse_urdf(low)).values()
+    # The ball of 0.1 m is 0.08 m high, 0.5 m from the joint: 5 mm are between it and the floor.
+    assert 0.08 + 0.5 * np.sin(-angle) >= 0.105
+    told: list[str] = []
+    assert make_srdf(parse_urdf(low), told.append).states["arm", "home"] == {"bend": (angle,)}
+    assert told == [
+        "at home arm with <floor>, 20 mm deep: home is moved to a state without contact"
+    ]
+
+
+def test_a_robot_that_is_in_the_floor_everywhere_stays_there():
+    sunk = robot(
+        ball("base", 0.1), ball("arm", 0.1, x=0.5), joint("turn", "base", "arm", axis="0 0 1")
+    )
+    assert free_start(parse_urdf(sunk)) == {}
+
+
 def test_a_robot_that_is_free_at_zero_starts_there():
-    apart = robot(ball("base", 0.1), ball("arm", 0.1, x=0.5), joint("turn", "base", "arm"))
+    turn = joint("turn", "base", "arm", xyz="0 0 0.2")
+    apart = robot(ball("base", 0.1), ball("arm", 0.1, x=0.5), turn)
     assert free_start(parse_urdf(apart)) == {}
 
 
@@ -114,7 +138,7 @@ def test_the_links_of_a_gripper_may_touch_where_it_is_closed():
         ball("base", 0.05),
         *(ball("arm", 0.05, x=0.5), ball("hand", 0.02), ball("rail", 0.01, x=0.1)),
         *(ball("left_finger", 0.02, x=0.2), ball("right_finger", 0.02, x=0.2)),
-        joint("turn", "base", "arm", axis="0 0 1"),
+        joint("turn", "base", "arm", axis="0 0 1", xyz="0 0 0.1"),
         joint("bend", "arm", "hand", axis="0 1 0", xyz="1 0 0"),
         joint("mount", "hand", "rail", kind="fixed", limits=None),
         slides("left_finger", "0 1 0", xyz="0 0.02 0"),

@@ -1,4 +1,4 @@
-"""Starts a robot that plans where it does not touch itself.
+"""Starts a robot that plans where it touches neither itself nor the floor.
 
 No motion can be planned from a state in which links are inside each other, and many arms are so
 with all joints at zero: a Panda's hand is in its forearm there.
@@ -22,7 +22,7 @@ TIMEOUT_S = 20.0
 
 
 def starting_free(setup: RobotSetup) -> RobotSetup:
-    """Return a robot that touches itself with all joints at zero with other initial values.
+    """Return a robot that is not free with all joints at zero with other initial values.
 
     Nothing changes if its description has initial values, or if it is free at zero.
     """
@@ -33,8 +33,8 @@ def starting_free(setup: RobotSetup) -> RobotSetup:
         return setup
     listed = ", ".join(f"{joint} at {value:g}" for joint, value in positions.items())
     remark = (
-        f"the robot touches itself with all joints at zero, and so starts with {listed}; an "
-        "initial_value in <ros2_control> chooses another start"
+        "with all joints at zero the robot touches itself or the floor, and so it starts with "
+        f"{listed}; an initial_value in <ros2_control> chooses another start"
     )
     description = with_initial_values(setup.description, positions)
     return replace(setup, description=description, remarks=(*setup.remarks, remark))

@@ -30,8 +30,9 @@ def test_a_robot_that_touches_itself_at_zero_gets_other_initial_values_and_that_
     setup = starting_free(set_up_robot(FOLDED))
     values = RobotDescription(setup.description).initial_values()
     assert values.keys() == {"wrist"}
+    assert "starts with wrist at " in setup.remarks[-1]
     assert setup.remarks[-1].startswith(
-        "the robot touches itself with all joints at zero, and so starts with wrist at "
+        "with all joints at zero the robot touches itself or the floor, and so it starts with "
     )
 
 
