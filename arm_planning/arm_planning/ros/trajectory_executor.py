@@ -32,6 +32,14 @@ ACTIONS: dict[ControllerKind, type[Any]] = {
     ControllerKind.GRIPPER_COMMAND: GripperCommand,
     ControllerKind.PARALLEL_GRIPPER_COMMAND: ParallelGripperCommand,
 }
+OFF_THE_WAY = (
+    FollowJointTrajectory.Result.PATH_TOLERANCE_VIOLATED,
+    FollowJointTrajectory.Result.GOAL_TOLERANCE_VIOLATED,
+)
+UNSEEN = (
+    "; if it touches a thing, or the floor, that the planning scene lacks, add it: "
+    "scene_from_world:=true adds what is in the simulation"
+)
 POLL_S = 0.005
 SERVER_TIMEOUT_S = 2.0
 STATE_TIMEOUT_S = 1.0
@@ -396,8 +404,9 @@ class _Goal:
         reason = getattr(result.result, "error_string", "") or (
             "a thing stops the gripper" if stalled else "see its log"
         )
+        advice = UNSEEN if getattr(result.result, "error_code", 0) in OFF_THE_WAY else ""
         return ExecutionOutcome(
-            MoveItErrorCode.CONTROL_FAILED, f"controller '{name}' gave up: {reason}"
+            MoveItErrorCode.CONTROL_FAILED, f"controller '{name}' gave up: {reason}{advice}"
         )
 
 

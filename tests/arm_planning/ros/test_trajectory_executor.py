@@ -74,8 +74,8 @@ class Controller:
         if self.cancels > self.lost_cancels:
             self.end(GoalStatus.STATUS_CANCELED)
 
-    def end(self, status: int) -> None:
-        self._end.complete(SimpleNamespace(status=status, result=SimpleNamespace()))
+    def end(self, status: int, **result: Any) -> None:
+        self._end.complete(SimpleNamespace(status=status, result=SimpleNamespace(**result)))
 
 
 class States:
@@ -276,6 +276,17 @@ def test_a_refused_part_of_a_controllers_joints_is_named(controller: Controller,
     manager: Any = ExecutionManager(None, states, lambda: [both], ExecutionSettings())
     controller.accepted = False
     assert "it has nothing for b, which only" in manager.execute(MOTION).message
+
+
+@pytest.mark.parametrize(("error_code", "is_advised"), [(-5, True), (-4, True), (-1, False)])
+def test_a_robot_that_something_holds_up_may_touch_what_the_scene_lacks(
+    manager: ExecutionManager, controller: Controller, error_code: int, is_advised: bool
+):
+    controller.end(GoalStatus.STATUS_ABORTED, error_code=error_code, error_string="j rests")
+    outcome = manager.execute(MOTION)
+    assert outcome.code is MoveItErrorCode.CONTROL_FAILED
+    assert outcome.message.startswith("controller 'arm_controller' gave up: j rests")
+    assert ("the floor, that the planning scene lacks" in outcome.message) is is_advised
 
 
 def test_a_refused_motion_names_the_controller(manager: ExecutionManager, controller: Controller):
