@@ -11,13 +11,13 @@ from rclpy.qos import QoSPresetProfiles
 from sensor_msgs.msg import BatteryState
 
 from arm_node.polled_subscriptions import PolledSubscriptions
-from arm_viewer.ros.observer import TopicTypes
+from arm_viewer.ros.observer import Observer, TopicTypes
 from arm_viewer.ros.topic_reader import TopicReader
 
 TOPIC = "/battery_state"
 
 
-class BatteryObserver:
+class BatteryObserver(Observer):
     """Keeps the newest charge."""
 
     def __init__(self, node: Node, polled: PolledSubscriptions) -> None:
@@ -125,9 +125,9 @@ def test_a_part_of_the_page_is_added_through_the_files_of_its_recipe(tmp_path):
             "from arm_viewer.ros.camera_observer",
         ),
         (
-            "        self._observers: tuple[Observer, ...] = (\n",
-            "        self._battery = BatteryObserver(self, polled)\n"
-            "        self._observers: tuple[Observer, ...] = (\n            self._battery,\n",
+            "        self._log = self._observing(LogObserver(self, polled))\n",
+            "        self._battery = self._observing(BatteryObserver(self, polled))\n"
+            "        self._log = self._observing(LogObserver(self, polled))\n",
         ),
         (
             "            made_s=now_s,\n",
