@@ -155,7 +155,7 @@ def row(given: Cell, scores: tuple[Score, Score]) -> harness.Row:
         times = np.array(score.times_ms)[solvable]
         p50, p99 = harness.percentiles(times, 50, 99)
         texts.append(
-            f"{p50:.1f} / {p99:.0f} ms, {score.solved.sum()} of {solvable.sum()}, "
+            f"{p50:.1f} / {p99:.1f} ms, {score.solved.sum()} of {solvable.sum()}, "
             f"{score.colliding} colliding"
         )
     both = scores[0].solved & scores[1].solved

@@ -8,6 +8,7 @@ The parser's errors are one sentence and suggest similar names.
 """
 
 import argparse
+import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NoReturn, Protocol
@@ -166,6 +167,17 @@ class CommandParser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Print the message in one line and exit with code 2."""
         self.exit(EXIT_USAGE, printable(f"{self.prog}: {message}; see {self.prog} --help") + "\n")
+
+
+def finite_number(text: str) -> float:
+    """Convert an option's value to a float that is neither infinite nor nan, for argparse."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return value
 
 
 def positive_number(text: str) -> float:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from arm_cli.arguments import JSON, Argument, Exclusive, Flag, positive_number, verb
+from arm_cli.arguments import JSON, Argument, Exclusive, Flag, finite_number, positive_number, verb
 from arm_cli.errors import CommandUsageError, NoSuchNameError
 from arm_cli.output import complain, say
 from arm_cli.ros.connection import connect
@@ -17,8 +17,19 @@ if TYPE_CHECKING:
     from arm_planning.robot.model import JointGroup, PlanningModel
 
 FULL_TURN_RAD = math.tau
+SHORTEST_S = 0.005
+"""A shorter motion only takes off what a servo is away from its goal."""
 EXTRA_TIME_S = 5.0
 """How much longer than its planning time a plan may take to arrive."""
+
+
+def _joint_position(word: str) -> tuple[str, float]:
+    """Convert JOINT=POSITION to both, for argparse."""
+    joint, _, text = word.partition("=")
+    try:
+        return joint, finite_number(text)
+    except argparse.ArgumentTypeError:
+        raise argparse.ArgumentTypeError(f"{word}: write it as {joint or 'j1'}=0.5") from None
 
 
 @verb(
@@ -26,7 +37,7 @@ EXTRA_TIME_S = 5.0
         Argument(
             "--pose",
             nargs="+",
-            type=float,
+            type=finite_number,
             metavar="NUMBER",
             help="X Y Z of the link in m, and ROLL PITCH YAW in rad for its orientation as well",
         ),
@@ -34,6 +45,7 @@ EXTRA_TIME_S = 5.0
         Argument(
             "--joints",
             nargs="+",
+            type=_joint_position,
             metavar="JOINT=POSITION",
             help="positions in rad or m; joints that are not named stay",
         ),
@@ -91,10 +103,8 @@ def move(options: argparse.Namespace) -> None:
         complain(f"arm move: {result.error_code.message}")
     if options.json:
         say(json.dumps(_document(result)))
-    elif result.planned_trajectory.joint_trajectory.points:
-        say(_summary(result, group))
     else:
-        say("the robot is there already")
+        say(_summary(result, group))
 
 
 def _group(model: "PlanningModel", name: str) -> "JointGroup":
@@ -118,7 +128,7 @@ def _goal(
     if options.state is not None:
         return joint_goal(_state(model, group.name, options.state))
     if options.joints is not None:
-        given = _joints(model, group, options.joints)
+        given = _known_joints(model, group, dict(options.joints))
         others = [joint for joint in group.joints if joint not in given]
         return joint_goal({**given, **client.positions(others)})
     x, y, z, *rpy = options.pose
@@ -138,20 +148,16 @@ def _state(model: "PlanningModel", group: str, name: str) -> Mapping[str, float]
         raise NoSuchNameError(str(error)) from error
 
 
-def _joints(model: "PlanningModel", group: "JointGroup", words: list[str]) -> dict[str, float]:
-    positions: dict[str, float] = {}
-    for word in words:
-        joint, _, text = word.partition("=")
+def _known_joints(
+    model: "PlanningModel", group: "JointGroup", positions: Mapping[str, float]
+) -> Mapping[str, float]:
+    for joint in positions:
         if joint not in group.joints:
             others = [name for name, other in model.groups.items() if joint in other.joints]
             advice = (
                 f"--group {others[0]} has it" if others else f"it has {', '.join(group.joints)}"
             )
             raise NoSuchNameError(f"group '{group.name}' has no joint '{joint}'; {advice}")
-        try:
-            positions[joint] = float(text)
-        except ValueError:
-            raise CommandUsageError(f"--joints {word}: write it as {joint}=0.5") from None
     return positions
 
 
@@ -174,8 +180,10 @@ def _request(group: "JointGroup", goal_constraints: Any, options: argparse.Names
 
 def _summary(result: Any, group: "JointGroup") -> str:
     points = result.planned_trajectory.joint_trajectory.points
-    end = points[-1].time_from_start
-    duration_s = end.sec + end.nanosec * 1e-9
+    ends_s = [each.time_from_start.sec + each.time_from_start.nanosec * 1e-9 for each in points]
+    duration_s = max(ends_s, default=0.0)
+    if duration_s < SHORTEST_S:
+        return "the robot is there already"
     verb = "moved" if result.executed_trajectory.joint_trajectory.points else "planned for"
     return (
         f"{verb} group '{group.name}': {len(points)} points in {duration_s:.2f} s, planned in "

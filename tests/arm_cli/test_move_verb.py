@@ -12,7 +12,10 @@ from arm_cli.main import main
         (["--pose", "1", "2"], "arm move: --pose takes X Y Z or X Y Z ROLL PITCH YAW, not 2"),
         (["--state", "home", "--joints", "j=1"], "not allowed with argument --state"),
         (["--state", "home", "--speed", "0"], "--speed"),
-        (["--pose", "x", "y", "z"], "--pose"),
+        (["--pose", "x", "y", "z"], "argument --pose: 'x' is not a number"),
+        (["--pose", "nan", "0", "0"], "argument --pose: 'nan' is not a number"),
+        (["--joints", "j1=a"], "argument --joints: j1=a: write it as j1=0.5"),
+        (["--joints", "inf"], "argument --joints: inf: write it as inf=0.5"),
         (
             ["--pose", "0.1", "0.1", "0.2", "0", "180", "0"],
             "arm move: --pose takes angles in rad, and 180 is 28.6 turns; 180 degrees are 3.142\n",

@@ -42,6 +42,8 @@ def test_arm_move_plans_and_moves_it(launch, client, urdf):
         return dict(zip(last.name, last.position, strict=True)) == pytest.approx(wanted, abs=0.01)
 
     states.wait_until(are_there, f"the joints at {wanted}")
+    with closing(RosProgram(words)) as program:
+        assert "the robot is there already" in program.succeed()
 
 
 def test_arm_move_finds_the_robot_in_its_namespace_and_ends_with_its_move_group(
