@@ -24,7 +24,7 @@ EXTRA_TIME_S = 5.0
 
 
 def _joint_position(word: str) -> tuple[str, float]:
-    """Convert JOINT=POSITION to both, for argparse."""
+    """Split JOINT=POSITION into a name and a number, for argparse."""
     joint, _, text = word.partition("=")
     try:
         return joint, finite_number(text)

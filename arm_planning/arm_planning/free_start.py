@@ -21,7 +21,7 @@ from arm_planning.srdf_maker import free_start
 def main() -> None:
     """Print the positions of the joints that do not start at zero."""
     paths = [Path(part) for part in sys.argv[1].split(":") if part]
-    urdf = sys.stdin.read()
+    urdf = sys.stdin.buffer.read().decode()
     positions: dict[str, float] = {}
     try:
         robot = parse_urdf(urdf, remark=ignore_remark)

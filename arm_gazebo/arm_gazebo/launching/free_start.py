@@ -22,7 +22,7 @@ TIMEOUT_S = 20.0
 
 
 def starting_free(setup: RobotSetup) -> RobotSetup:
-    """Return a robot that is not free with all joints at zero with other initial values.
+    """Give a robot that touches something with all joints at zero other initial values.
 
     Nothing changes if its description has initial values, or if it is free at zero.
     """
@@ -51,7 +51,7 @@ def _free_positions(setup: RobotSetup) -> dict[str, float]:
             stderr=subprocess.DEVNULL,
             timeout=TIMEOUT_S,
             check=False,
-            text=True,
+            encoding="utf-8",
         )
     except subprocess.TimeoutExpired:
         return {}

@@ -108,3 +108,4 @@ def test_closing_waits_for_the_bag(recorder):
     until(lambda: recorder.state.dropped)
     recorder.close()
     until(lambda: not recorder.state.is_recording)
+    assert recorder.state.dropped

@@ -231,17 +231,18 @@ def test_numbers_of_a_pose_are_finite(planner, bad):
 
 
 def test_a_goal_at_the_end_of_the_world_is_out_of_reach():
-    refused(MoveItErrorCode.NO_IK_SOLUTION, asked("LIN", pose_goal((1e5, 0.0, 0.0))))
+    assert refused(MoveItErrorCode.NO_IK_SOLUTION, asked("LIN", pose_goal((1e5, 0.0, 0.0))))
 
 
 def test_a_rotation_that_is_none_is_refused():
     goal = pose_goal((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
-    refused(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, asked("LIN", goal))
+    assert refused(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, asked("LIN", goal))
 
 
 def test_the_point_of_an_arc_is_finite():
     path = auxiliary("interim", (float("nan"), 0.0, 0.0))
-    refused(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, asked("CIRC", CIRC["goal"], path=path))
+    request = asked("CIRC", CIRC["goal"], path=path)
+    assert refused(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, request)
 
 
 def test_position_and_orientation_are_for_the_same_link():
