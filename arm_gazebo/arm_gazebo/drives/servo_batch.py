@@ -38,32 +38,18 @@ class ServoBatch:
     """
 
     def __init__(self, model: mujoco.MjModel, servo: Servo, copies: int) -> None:
-        constants = drive_constants(model, servo)
-        self._copies, count = copies, len(servo.joints)
-        self._period_s, self._rate_per_s = constants.period_s, constants.rate_per_s
-        self._lead_s = constants.lead_s
-        self._effort, self._speed = constants.effort, constants.speed
-        self._velocity_limit = constants.velocity_limit
-        self._lower, self._upper = constants.lower, constants.upper
-        self._law = constants.law
-        self._sure, self._floor = constants.braking, FLOOR * constants.braking
-        self._jerkless = constants.jerkless
-        self._slack = constants.slack
-        self._friction, self._drag = constants.friction, constants.drag
-        self._compliance = constants.compliance
-        self._followers_inertia = constants.followers_inertia
-        self._followers = constants.followers
-        self._product = InertiaProduct(model, servo.tuning.coupling / constants.period_s)
-        self._dofs, self._addresses = as_slice(constants.dofs), as_slice(constants.addresses)
-        self._diagonal = as_slice(constants.diagonal)
-        self._find_columns(constants.modes)
-        self._settle_ticks = constants.settle_ticks
-        self._check_ticks = constants.check_ticks
-        shape = (copies, count)
+        self._joints = joints = drive_constants(model, servo)
+        self._copies = copies
+        self._floor = FLOOR * joints.braking
+        self._product = InertiaProduct(model, servo.tuning.coupling / joints.period_s)
+        self._dofs, self._addresses = as_slice(joints.dofs), as_slice(joints.addresses)
+        self._diagonal = as_slice(joints.diagonal)
+        self._find_columns(joints.modes)
+        shape = (copies, len(joints.modes))
         self._ticks = np.zeros((copies, 1), dtype=np.int64)
         self._way_to_renew = np.zeros(copies)
         self._part = np.zeros(shape)
-        self._awake_ticks = np.full(copies, self._settle_ticks)
+        self._awake_ticks = np.full(copies, joints.settle_ticks)
         self._still = np.zeros(shape)
         self._position, self._velocity = np.zeros(shape), np.zeros(shape)
         self._start_position, self._start_velocity = np.zeros(shape), np.zeros(shape)
@@ -86,16 +72,16 @@ class ServoBatch:
     def restart(self, rows: NDArray[np.intp], qpos: Array, qvel: Array) -> None:
         """Restart copies from states (rows, nq) and (rows, nv), as `Servo.reset` does."""
         position = qpos[:, self._addresses]
-        limit = self._velocity_limit
+        joints = self._joints
+        limit = joints.velocity_limit
         velocity = np.minimum(np.maximum(qvel[:, self._dofs], -limit), limit)
-        stop = position + 0.5 * velocity * np.abs(velocity) / self._sure
+        stop = position + 0.5 * velocity * np.abs(velocity) / joints.braking
         self._position[rows], self._velocity[rows] = position, velocity
         self._start_position[rows], self._start_velocity[rows] = position, velocity
-        self._streams.put(
-            rows, CommandStreams.at(np.minimum(np.maximum(stop, self._lower), self._upper))
-        )
+        stop = np.minimum(np.maximum(stop, joints.lower), joints.upper)
+        self._streams.put(rows, CommandStreams.at(stop))
         self._ticks[rows], self._way_to_renew[rows], self._part[rows] = 0, 0.0, 0.0
-        self._awake_ticks[rows] = self._settle_ticks
+        self._awake_ticks[rows] = joints.settle_ticks
         self._taken[rows] = np.nan
 
     def command(self, values: Array) -> None:
@@ -111,9 +97,9 @@ class ServoBatch:
             return
         self._renew_where_one_starts(values, new)
         np.copyto(self._taken, values, where=new[:, None])
-        self._awake_ticks[new] = self._settle_ticks
+        self._awake_ticks[new] = self._joints.settle_ticks
         positions = np.where(self._by_position & new[:, None], values, self._streams.command)
-        self._streams.take(positions, self._ticks, self._period_s)
+        self._streams.take(positions, self._ticks, self._joints.period_s)
 
     def _renew_where_one_starts(self, values: Array, new: Rows) -> None:
         """See `DrivenJoint.command`."""
@@ -153,7 +139,7 @@ class ServoBatch:
         """Let copies fall asleep that have been at rest for a while."""
         # A joint that falls or is commanded by effort keeps its copy awake.
         stays = moving if self._all_servoed else np.ones(self._copies, dtype=bool)
-        ticks = np.where(stays, self._settle_ticks, self._awake_ticks - 1)
+        ticks = np.where(stays, self._joints.settle_ticks, self._awake_ticks - 1)
         self._awake_ticks = ticks if rows is None else np.where(rows, ticks, self._awake_ticks)
         falls = (ticks == 0) if rows is None else (ticks == 0) & rows
         if falls.any():
@@ -164,17 +150,18 @@ class ServoBatch:
         rows = self._awake_ticks > 0
         if rows.all():
             return None
-        due = np.flatnonzero(~rows & (self._ticks[:, 0] % self._check_ticks == 0))
+        due = np.flatnonzero(~rows & (self._ticks[:, 0] % self._joints.check_ticks == 0))
         positions = qpos[:, self._addresses]
         for row in due.tolist():
             # As in `Servo`: summing the squares in another way would give other bits.
             distance = math.dist(positions[row].tolist(), self._still[row].tolist())
             if distance > WAKE_DISTANCE:
-                self._awake_ticks[row], rows[row] = self._settle_ticks, True
+                self._awake_ticks[row], rows[row] = self._joints.settle_ticks, True
         return rows
 
     def _renew_braking(self, rows: NDArray[np.intp], inertia: Array, gravity: Array) -> None:
         """See `Servo`."""
+        joints = self._joints
         self._way_to_renew[rows] = RENEW_EVERY
         position, velocity = self._position[rows], self._velocity[rows]
         streams, asked = self._streams, self._asked()[rows]
@@ -183,47 +170,41 @@ class ServoBatch:
         if self._by_velocity.any():
             by = self._by_velocity
             rests = np.where(by, (velocity == 0.0) & (asked == 0.0), rests)
-            target = np.where(by, np.where(asked > 0.0, self._upper, self._lower), target)
+            target = np.where(by, np.where(asked > 0.0, joints.upper, joints.lower), target)
         needs = 0.5 * velocity * velocity / np.maximum(np.abs(target - position), NEAREST)
         needs = np.where(rests | ~self._servoed, -1.0, needs)
-        room = np.where(self._servoed, 1.0 / budgets(self._effort, gravity[rows]), 0.0)
+        room = np.where(self._servoed, 1.0 / budgets(joints.effort, gravity[rows]), 0.0)
         room = np.where((needs < 0.0) & (velocity == 0.0), RESTING * room, room)
-        parts = self._law.parts_of_many(inertia[rows], room, self._floor, needs)
+        parts = joints.law.parts_of_many(inertia[rows], room, self._floor, needs)
         self._part[rows] = np.where(needs >= 0.0, parts, self._part[rows])
 
     def _plan(
         self, where: Rows | None, qpos: Array, qvel: Array, inertia: Array, gravity: Array
     ) -> Rows:
         """Advance the set-points of the awake copies; return which copies have a moving one."""
-        position, velocity = held_back(
-            self._position,
-            self._velocity,
-            qpos[:, self._addresses],
-            qvel[:, self._dofs],
-            self._slack,
-        )
-        self._streams.advance(where, self._period_s)
+        joints = self._joints
+        place, motion = qpos[:, self._addresses], qvel[:, self._dofs]
+        position, velocity = held_back(self._position, self._velocity, place, motion, joints.slack)
+        self._streams.advance(where, joints.period_s)
         target, target_velocity = self._streams.target, self._streams.velocity
-        speed = np.broadcast_to(self._speed, position.shape)
-        if self._rate_per_s:
+        rests = (target == position) & (target_velocity == 0.0) & (velocity == 0.0)
+        speed = np.broadcast_to(joints.speed, position.shape)
+        if joints.rate_per_s:
             by = self._by_position
             proportional = self._proportional_speed(target, position, velocity)
             speed = np.where(by, proportional, speed)
-            rests = (target == position) & (target_velocity == 0.0) & (velocity == 0.0)
             target_velocity = np.where(by, 0.0, target_velocity)
-        else:
-            rests = (target == position) & (target_velocity == 0.0) & (velocity == 0.0)
         if self._by_velocity.any():
             asked, by = self._asked(), self._by_velocity
             speed = np.where(by, np.abs(asked), speed)
-            target = np.where(by, np.where(asked > 0.0, self._upper, self._lower), target)
+            target = np.where(by, np.where(asked > 0.0, joints.upper, joints.lower), target)
             target_velocity = np.where(by, 0.0, target_velocity)
             rests = rests & ~by
-        felt = inertia[:, self._diagonal] + self._followers_inertia
-        acceleration = budgets(self._effort, gravity) / felt
-        braking = np.minimum(self._part * acceleration, self._jerkless)
+        felt = inertia[:, self._diagonal] + joints.followers_inertia
+        acceleration = budgets(joints.effort, gravity) / felt
+        braking = np.minimum(self._part * acceleration, joints.jerkless)
         braking = np.maximum(braking, self._floor)
-        acceleration = np.maximum(np.minimum(acceleration, self._jerkless), self._sure)
+        acceleration = np.maximum(np.minimum(acceleration, joints.jerkless), joints.braking)
         end, end_velocity = approach(
             position,
             velocity,
@@ -232,7 +213,7 @@ class ServoBatch:
             speed,
             acceleration,
             braking,
-            self._period_s,
+            joints.period_s,
         )
         end = np.where(rests, position, end)
         end_velocity = np.where(rests, velocity, end_velocity)
@@ -244,10 +225,11 @@ class ServoBatch:
 
     def _proportional_speed(self, target: Array, position: Array, velocity: Array) -> Array:
         """Return the speeds of exponential approaches; see `DrivenJoint`."""
-        half_s = 0.5 * self._period_s
+        joints = self._joints
+        half_s = 0.5 * joints.period_s
         distance = np.abs(target - position) - half_s * np.abs(velocity)
-        speed = self._rate_per_s * distance / (1.0 + self._rate_per_s * half_s)
-        return np.where(speed > LANDING_SPEED, np.minimum(speed, self._speed), self._speed)
+        speed = joints.rate_per_s * distance / (1.0 + joints.rate_per_s * half_s)
+        return np.where(speed > LANDING_SPEED, np.minimum(speed, joints.speed), joints.speed)
 
     def _commit(
         self, where: Rows | None, start: Array, start_velocity: Array, end: Array, velocity: Array
@@ -268,7 +250,7 @@ class ServoBatch:
     ) -> Array:
         """Return the efforts of the planned motions; slow those that need too much."""
         efforts = self._efforts(inertia, bias)
-        limit = USABLE_EFFORT * self._effort
+        limit = USABLE_EFFORT * self._joints.effort
         over = ((np.abs(efforts) > limit) & self._servoed).any(axis=1, keepdims=True)
         if where is not None:
             over &= where
@@ -283,9 +265,8 @@ class ServoBatch:
         slowed = over & (gain * self._velocity > 0.0) & self._servoed
         velocity = np.where(slowed, self._start_velocity + share * gain, self._velocity)
         mean = 0.5 * (self._start_velocity + velocity)
-        self._position = np.where(
-            slowed, self._start_position + mean * self._period_s, self._position
-        )
+        end = self._start_position + mean * self._joints.period_s
+        self._position = np.where(slowed, end, self._position)
         self._velocity = velocity
         return np.where(over, self._efforts(inertia, bias), efforts)
 
@@ -301,19 +282,20 @@ class ServoBatch:
     def _felt(self, efforts: Array) -> Array:
         """Return the efforts of all degrees of freedom as the driven joints feel them."""
         felt = efforts[:, self._dofs].copy()
-        for column, follower, ratio in self._followers:
+        for column, follower, ratio in self._joints.followers:
             felt[:, column] += ratio * efforts[:, follower]
         return felt
 
     def _write(self, where: Rows | None, efforts: Array) -> None:
         """Store the activations at the start of the period, and their rates."""
+        joints = self._joints
         speed, start_speed = self._velocity, self._start_velocity
-        resisted = efforts + (self._drag * speed + np.copysign(self._friction, speed))
+        resisted = efforts + (joints.drag * speed + np.copysign(joints.friction, speed))
         effort = np.where(speed != 0.0, resisted, efforts)
-        effort = np.maximum(np.minimum(effort, self._effort), -self._effort)
-        start, lead_s = self._start_position, self._lead_s
-        activations = start + lead_s * start_speed + effort * self._compliance
-        rates = (self._position - start + lead_s * (speed - start_speed)) * (1.0 / self._period_s)
+        effort = np.maximum(np.minimum(effort, joints.effort), -joints.effort)
+        start, lead_s = self._start_position, joints.lead_s
+        activations = start + lead_s * start_speed + effort * joints.compliance
+        rates = (self._position - start + lead_s * (speed - start_speed)) * (1.0 / joints.period_s)
         if not self._all_servoed:
             asked = np.where(self._by_effort & ~np.isnan(self._taken), self._taken, 0.0)
             activations = np.where(self._servoed, activations, asked)

@@ -6,6 +6,7 @@ number has the same bits as on the host.
 
 import warp as wp
 
+from arm_gazebo.batch.gpu.drive_states import BrakingStates, DriveLaw
 from arm_gazebo.batch.gpu.setpoint_kernels import HALF, ONE, ZERO
 from arm_gazebo.drives import braking_law
 from arm_gazebo.drives.driven_joint import NEAREST
@@ -25,39 +26,6 @@ CLOSE = wp.constant(wp.float64(NEAREST))
 RESTS = wp.constant(wp.float64(-1.0))
 
 
-@wp.struct
-class CoupledJoints:
-    """What stays the same: how joints feel each other's motion; see `BrakingLaw`."""
-
-    count: wp.int32
-    # Shape (layers, count * count).
-    entry: wp.array2d[wp.int32]
-    weight: wp.array2d[wp.float64]
-    # Shape (count * count,).
-    related: wp.array[wp.int32]
-    # Shape (count,).
-    followers_inertia: wp.array[wp.float64]
-    jerkless: wp.array[wp.float64]
-    sure: wp.array[wp.float64]
-
-
-@wp.struct
-class BrakingStates:
-    """The bounds of all copies, arrays of shape (copies, joints) if not said otherwise."""
-
-    part: wp.array2d[wp.float64]
-    # Shape (copies,).
-    way_to_renew: wp.array[wp.float64]
-    # Of this period only.
-    need: wp.array2d[wp.float64]
-    room: wp.array2d[wp.float64]
-    kept: wp.array2d[wp.float64]
-    more: wp.array2d[wp.float64]
-    share: wp.array2d[wp.float64]
-    # Shape (copies, joints * joints).
-    felt: wp.array2d[wp.float64]
-
-
 @wp.func
 def budget(effort: wp.float64, gravity: wp.float64) -> wp.float64:
     """Return the effort that a joint may need for all motions; see `braking_law.budget`."""
@@ -73,7 +41,7 @@ def needed_braking(gap: wp.float64, velocity: wp.float64) -> wp.float64:
 
 @wp.func
 def renew_parts(
-    joints: CoupledJoints, bounds: BrakingStates, copy: wp.int32, inertia: wp.array2d[wp.float32]
+    joints: DriveLaw, bounds: BrakingStates, copy: wp.int32, inertia: wp.array2d[wp.float32]
 ) -> None:
     """Renew the parts of the joints that move, from their needs and rooms."""
     count = joints.count

@@ -2,9 +2,6 @@
 
 import warp as wp
 
-from arm_gazebo.batch.gpu.braking_kernels import BrakingStates, CoupledJoints
-from arm_gazebo.batch.gpu.setpoint_kernels import Streams
-
 
 @wp.struct
 class DriveLaw:
@@ -29,7 +26,11 @@ class DriveLaw:
     drag: wp.array[wp.float64]
     compliance: wp.array[wp.float64]
     followers_inertia: wp.array[wp.float64]
-    coupled: CoupledJoints
+    # How joints feel each other's motion, shape (layers, count * count); see `BrakingLaw`.
+    entry: wp.array2d[wp.int32]
+    weight: wp.array2d[wp.float64]
+    # Shape (count * count,).
+    related: wp.array[wp.int32]
     # Mimic joints, shape (followers,).
     follower_joint: wp.array[wp.int32]
     follower_dof: wp.array[wp.int32]
@@ -45,6 +46,34 @@ class DriveLaw:
     lead_s: wp.float64
     settle_ticks: wp.int32
     check_ticks: wp.int32
+
+
+@wp.struct
+class Streams:
+    """The `CommandStreams` of all copies, arrays of shape (copies, joints)."""
+
+    target: wp.array2d[wp.float64]
+    velocity: wp.array2d[wp.float64]
+    command: wp.array2d[wp.float64]
+    left: wp.array2d[wp.int32]
+    last_change: wp.array2d[wp.int32]
+
+
+@wp.struct
+class BrakingStates:
+    """The bounds of all copies, arrays of shape (copies, joints) if not said otherwise."""
+
+    part: wp.array2d[wp.float64]
+    # Shape (copies,).
+    way_to_renew: wp.array[wp.float64]
+    # Of this period only.
+    need: wp.array2d[wp.float64]
+    room: wp.array2d[wp.float64]
+    kept: wp.array2d[wp.float64]
+    more: wp.array2d[wp.float64]
+    share: wp.array2d[wp.float64]
+    # Shape (copies, joints * joints).
+    felt: wp.array2d[wp.float64]
 
 
 @wp.struct

@@ -193,7 +193,7 @@ def renew_braking(
             bounds.need[copy, joint] = RESTS
             if velocity == ZERO:
                 bounds.room[copy, joint] = bounds.room[copy, joint] * RESTING
-    renew_parts(joints.coupled, bounds, copy, inertia)
+    renew_parts(joints, bounds, copy, inertia)
 
 
 @wp.func

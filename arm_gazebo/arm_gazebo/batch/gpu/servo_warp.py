@@ -3,15 +3,16 @@
 So a GPU does a control period from the commands to the last physics step without the host.
 """
 
+from collections.abc import Sequence
+from typing import Any
+
 import mujoco
 import numpy as np
 import warp as wp
 from numpy.typing import NDArray
 
-from arm_gazebo.batch.gpu.braking_kernels import BrakingStates, CoupledJoints
 from arm_gazebo.batch.gpu.drive_states import DriveLaw, DriveStates
 from arm_gazebo.batch.gpu.servo_kernels import command, restart, update
-from arm_gazebo.batch.gpu.setpoint_kernels import Streams
 from arm_gazebo.drives.drive_constants import DriveConstants, drive_constants
 from arm_gazebo.drives.driven_joint import SERVOED
 from arm_gazebo.drives.inertia_product import InertiaProduct
@@ -42,14 +43,14 @@ class ServoWarp:
         self._copies, self._device = copies, device
         constants = drive_constants(model, servo)
         product = InertiaProduct(model, servo.tuning.coupling / constants.period_s)
-        actuators = np.array([joint.actuator or 0 for joint in servo.joints], dtype=np.intp)
+        count = len(servo.joints)
         with wp.ScopedDevice(device):
-            self._joints = _joints(constants, product)
-            self._joints.control = _integers(model.actuator_ctrladr[actuators])
-            self._joints.activation = _integers(model.actuator_actadr[actuators])
-            self._drives = _drives(copies, len(servo.joints), model.nv)
-            self._start = _numbers(start)
-            self._values = wp.zeros((copies, len(servo.joints)), dtype=wp.float64)
+            self._joints = _joints(model, servo, constants, product)
+            self._drives = _zeros(DriveStates, copies, count)
+            self._drives.load = wp.zeros((copies, model.nv), dtype=wp.float64)
+            self._drives.bounds.felt = wp.zeros((copies, count * count), dtype=wp.float64)
+            self._start = wp.array(start, dtype=wp.float64)
+            self._values = wp.zeros((copies, count), dtype=wp.float64)
 
     def restart(self, rows: wp.array) -> None:
         """Restart copies from their start; their indices are 32-bit integers on the device."""
@@ -85,87 +86,45 @@ class ServoWarp:
         wp.launch(update, self._copies, inputs=inputs, device=self._device, block_dim=THREADS)
 
 
-def _joints(constants: DriveConstants, product: InertiaProduct) -> DriveLaw:
+def _joints(
+    model: mujoco.MjModel, servo: Servo, constants: DriveConstants, product: InertiaProduct
+) -> DriveLaw:
+    law, actuators = constants.law, [joint.actuator or 0 for joint in servo.joints]
+    values = {
+        "count": len(constants.modes),
+        "mode": [MODE_NUMBERS[mode] for mode in constants.modes],
+        "servoed": [mode in SERVOED for mode in constants.modes],
+        "address": constants.addresses,
+        "dof": constants.dofs,
+        "control": model.actuator_ctrladr[actuators],
+        "activation": model.actuator_actadr[actuators],
+        "sure": constants.braking,
+        "entry": law.entries.reshape(len(law.entries), -1),
+        "weight": law.weights.reshape(len(law.weights), -1),
+        "related": law.related.ravel(),
+        "per_period": 1.0 / constants.period_s,
+        **_columns(("follower_joint", "follower_dof", "follower_ratio"), constants.followers),
+        **_columns(("term_row", "term_entry", "term_joint", "term_factor"), product.terms()),
+    }
     joints = DriveLaw()
-    joints.count = len(constants.modes)
-    joints.mode = _integers([MODE_NUMBERS[mode] for mode in constants.modes])
-    joints.servoed = _integers([mode in SERVOED for mode in constants.modes])
-    joints.address, joints.dof = _integers(constants.addresses), _integers(constants.dofs)
-    joints.diagonal = _integers(constants.diagonal)
-    for name in (
-        "effort",
-        "speed",
-        "lower",
-        "upper",
-        "jerkless",
-        "slack",
-        "friction",
-        "drag",
-        "compliance",
-        "followers_inertia",
-    ):
-        setattr(joints, name, _numbers(getattr(constants, name)))
-    joints.sure = _numbers(constants.braking)
-    joints.coupled = _coupled(constants)
-    joints.follower_joint = _integers([follower[0] for follower in constants.followers])
-    joints.follower_dof = _integers([follower[1] for follower in constants.followers])
-    joints.follower_ratio = _numbers([follower[2] for follower in constants.followers])
-    terms = product.terms()
-    joints.term_row = _integers([term[0] for term in terms])
-    joints.term_entry = _integers([term[1] for term in terms])
-    joints.term_joint = _integers([term[2] for term in terms])
-    joints.term_factor = _numbers([term[3] for term in terms])
-    joints.period_s, joints.per_period = constants.period_s, 1.0 / constants.period_s
-    joints.rate_per_s, joints.lead_s = constants.rate_per_s, constants.lead_s
-    joints.settle_ticks, joints.check_ticks = constants.settle_ticks, constants.check_ticks
+    for name, member in DriveLaw.vars.items():
+        value = values[name] if name in values else getattr(constants, name)
+        is_array = hasattr(member.type, "dtype")
+        setattr(joints, name, wp.array(value, dtype=member.type.dtype) if is_array else value)
     return joints
 
 
-def _coupled(constants: DriveConstants) -> CoupledJoints:
-    law, coupled = constants.law, CoupledJoints()
-    layers, count, _ = law.entries.shape
-    coupled.count = count
-    coupled.entry = _integers(law.entries.reshape(layers, count * count))
-    coupled.weight = _numbers(law.weights.reshape(layers, count * count))
-    coupled.related = _integers(law.related.ravel())
-    coupled.followers_inertia = _numbers(law.followers)
-    coupled.jerkless, coupled.sure = _numbers(law.jerkless), _numbers(constants.braking)
-    return coupled
+def _columns(names: Sequence[str], rows: Sequence[Sequence[float]]) -> dict[str, Array]:
+    return dict(zip(names, np.reshape(rows, (-1, len(names))).T, strict=True))
 
 
-def _drives(copies: int, joints: int, dofs: int) -> DriveStates:
-    drives, shape = DriveStates(), (copies, joints)
-    drives.tick, drives.awake = (wp.zeros(copies, dtype=wp.int32) for _ in range(2))
-    for name in (
-        "still",
-        "position",
-        "velocity",
-        "taken",
-        "start_position",
-        "start_velocity",
-        "gravity",
-        "planned",
-    ):
-        setattr(drives, name, wp.zeros(shape, dtype=wp.float64))
-    drives.load = wp.zeros((copies, dofs), dtype=wp.float64)
-    streams = Streams()
-    for name in ("target", "velocity", "command"):
-        setattr(streams, name, wp.zeros(shape, dtype=wp.float64))
-    streams.left = wp.zeros(shape, dtype=wp.int32)
-    streams.last_change = wp.zeros(shape, dtype=wp.int32)
-    drives.streams = streams
-    bounds = BrakingStates()
-    for name in ("part", "need", "room", "kept", "more", "share"):
-        setattr(bounds, name, wp.zeros(shape, dtype=wp.float64))
-    bounds.way_to_renew = wp.zeros(copies, dtype=wp.float64)
-    bounds.felt = wp.zeros((copies, joints * joints), dtype=wp.float64)
-    drives.bounds = bounds
-    return drives
-
-
-def _integers(values: object) -> wp.array:
-    return wp.array(np.asarray(values, dtype=np.int32), dtype=wp.int32)
-
-
-def _numbers(values: object) -> wp.array:
-    return wp.array(np.asarray(values, dtype=np.float64), dtype=wp.float64)
+def _zeros(struct: Any, copies: int, joints: int) -> Any:
+    """Return a structure with arrays of zeros, of shape (copies,) or (copies, joints)."""
+    made = struct()
+    for name, member in struct.vars.items():
+        kind = member.type
+        if hasattr(kind, "dtype"):
+            setattr(made, name, wp.zeros((copies, joints)[: kind.ndim], dtype=kind.dtype))
+        else:
+            setattr(made, name, _zeros(kind, copies, joints))
+    return made

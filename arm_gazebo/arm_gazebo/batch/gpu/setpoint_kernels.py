@@ -6,6 +6,7 @@ number has the same bits as on the host.
 
 import warp as wp
 
+from arm_gazebo.batch.gpu.drive_states import Streams
 from arm_gazebo.drives.driven_joint import LANDING_SPEED, MAX_INTERVAL_S
 from arm_gazebo.drives.setpoint import LANDING_SLACK, LATE_BRAKING
 
@@ -17,17 +18,6 @@ LONGEST_S = wp.constant(wp.float64(MAX_INTERVAL_S))
 SLACK = wp.constant(wp.float64(LANDING_SLACK))
 LATE = wp.constant(wp.float64(LATE_BRAKING))
 SLOWEST = wp.constant(wp.float64(LANDING_SPEED))
-
-
-@wp.struct
-class Streams:
-    """The `CommandStreams` of all copies, arrays of shape (copies, joints)."""
-
-    target: wp.array2d[wp.float64]
-    velocity: wp.array2d[wp.float64]
-    command: wp.array2d[wp.float64]
-    left: wp.array2d[wp.int32]
-    last_change: wp.array2d[wp.int32]
 
 
 @wp.func
