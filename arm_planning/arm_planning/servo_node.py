@@ -16,8 +16,7 @@ def application(process: NodeProcess) -> Iterator[None]:
     """Serve until the process ends."""
     # Imported only after the environment is prepared, because it locates the message packages.
     from arm_planning.ros.robot_setup import planning_node, read_setup
-    from arm_planning.ros.servo import JogServer
-    from arm_planning.ros.servo_parameters import read_servo_settings
+    from arm_planning.ros.servo import JogServer, read_servo_settings
 
     node = first_node(lambda: planning_node("servo_node"))
     settings = read_servo_settings(node)

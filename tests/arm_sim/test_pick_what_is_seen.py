@@ -10,7 +10,7 @@ from arm_controller.pick_plan import CLOSED, WIDE_OPEN, JointPath, PickTask, Pla
 from arm_description import expand_xacro, resolve_uri
 from arm_description.transforms import quaternion_from_rpy
 from arm_node.rigid_transform import RigidTransform, rpy_from_rows
-from arm_planning.collision.seen_robot import SeenRobot
+from arm_planning.collision.body_filter import SeenRobot
 from arm_planning.perception.table import SeenThing, find_things
 from arm_planning.perception.testing import noisy
 from arm_sim import GoalError, JointTrajectory, Simulation

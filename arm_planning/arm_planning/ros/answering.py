@@ -2,14 +2,15 @@
 
 import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 
 from arm_node.qos import SERVICE_QOS
-from arm_planning.errors import MoveItErrorCode
+from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.ros.convert import error_code
 
 HOLDERS = ("motion_plan_response", "response")
@@ -27,15 +28,16 @@ class BusyLimit:
         self.most = most
         self._free = threading.BoundedSemaphore(most)
 
-    def serve(self, name: str, serve: Serve, request: Any, response: Any) -> Any:
-        """Serve a request, or refuse it while too many others are being served."""
+    @contextmanager
+    def turn(self, name: str) -> Iterator[None]:
+        """Serve a request, or refuse it with a PlanningError while too many others are served."""
         if not self._free.acquire(blocking=False):
-            sentence = f"{name}: {self.most} other requests are being served; ask again later"
-            LOGGER.error("%s", sentence)
-            fill_error(response, MoveItErrorCode.FAILURE, sentence)
-            return response
+            raise PlanningError(
+                MoveItErrorCode.FAILURE,
+                f"{name}: {self.most} other requests are being served; ask again later",
+            )
         try:
-            return serve(request, response)
+            yield
         finally:
             self._free.release()
 
@@ -51,20 +53,23 @@ def offer_service(
 ) -> None:
     """Offer a service; all of this package are made here, so that each of them answers.
 
-    An exception of `serve`, which fills the response, is logged, and the code becomes FAILURE. By
-    default no other callback of the node's own group may run beside it. A limit is shared by the
-    services that take long.
+    An exception of `serve`, which fills the response, is logged and answered: a PlanningError with
+    its code, any other with FAILURE. By default no other callback of the node's own group may run
+    beside it. A limit is shared by the services that take long.
     """
 
     def answer(request: Any, response: Any) -> Any:
         try:
-            if limit is not None:
-                return limit.serve(name, serve, request, response)
-            return serve(request, response)
+            with nullcontext() if limit is None else limit.turn(name):
+                return serve(request, response)
+        except PlanningError as error:
+            LOGGER.error("%s: %s", name, error)
+            code, sentence = error.code, str(error)
         except Exception as error:
-            failed = type(response)()
-            fill_error(failed, MoveItErrorCode.FAILURE, report_fault(name, error))
-            return failed
+            code, sentence = MoveItErrorCode.FAILURE, report_fault(name, error)
+        failed = type(response)()
+        fill_error(failed, code, sentence)
+        return failed
 
     node.create_service(kind, name, answer, qos_profile=SERVICE_QOS, callback_group=group)
 

@@ -24,6 +24,7 @@ from arm_planning.request import PlanRequest
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import Warn, quaternion_of, vector_of
 from arm_planning.ros.convert_shapes import placed_shapes
+from arm_planning.scene.frames import LinkPoses
 from arm_planning.scene.objects import PlacedShape
 from arm_planning.scene.scene import PlanningScene
 
@@ -78,6 +79,14 @@ class ConstraintFrames:
             return self.link_and_offset(name)
         except PlanningError:
             return "", self.pose(name)
+
+    def placed(self, link: str, offset: RigidTransform) -> RigidTransform:
+        """Return the pose in the planning frame of what has a pose on a link, or on "": in it.
+
+        Raises:
+            PlanningError: INVALID_LINK_NAME: there is no such link.
+        """
+        return LinkPoses(self.model, self.scene.positions).of(link).then(offset) if link else offset
 
 
 def constraints_of(

@@ -20,19 +20,16 @@ from arm_planning.ros.controller_list import ControllerList
 from arm_planning.ros.convert import error_code
 from arm_planning.ros.geometry_files import GeometryFiles
 from arm_planning.ros.goals import Turns
-from arm_planning.ros.motion_goals import PLANS, MotionGoals
-from arm_planning.ros.move_action import MoveActions
-from arm_planning.ros.octomap_settings import octomap_settings
-from arm_planning.ros.octomap_updater import OctomapUpdater
+from arm_planning.ros.motion_goals import PLANS, MotionGoals, MoveActions
+from arm_planning.ros.octomap_updater import OctomapUpdater, octomap_settings
 from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planner_parameters import PlannerParameterServices
-from arm_planning.ros.planning_services import PlanningServices
+from arm_planning.ros.planning_services import PlanningServices, StateServices
 from arm_planning.ros.planning_session import PlanningSession
 from arm_planning.ros.quick_services import QuickExecutor, QuickServices, SlowExecutor
 from arm_planning.ros.robot_setup import PlanningSetup, switch_of, values_below
 from arm_planning.ros.scene_monitor import SceneMonitor
 from arm_planning.ros.sequence_server import SequenceServer
-from arm_planning.ros.state_services import StateServices
 from arm_planning.ros.trajectory_executor import ExecutionManager
 
 SERVICES = 8
@@ -72,7 +69,7 @@ class MoveGroup:
             SequenceServer(node, motions, limit),
             PlanningServices(node, session, display, limit),
             StateServices(node, session, limit, self._quick),
-            PlannerParameterServices(node, session.parameters, setup.model.groups),
+            PlannerParameterServices(node, session.parameters, setup.model),
             GeometryFiles(node, setup.model, self.monitor),
         )
         self._semantic = node.create_publisher(String, "robot_description_semantic", LATCHED)
@@ -125,13 +122,7 @@ class MoveGroup:
         return answer
 
     def _urdf(self, request: Any, answer: GetGroupUrdf.Response) -> GetGroupUrdf.Response:
-        if request.group_name not in self._model.groups:
-            groups = ", ".join(self._model.groups)
-            answer.error_code = error_code(
-                MoveItErrorCode.INVALID_GROUP_NAME,
-                f"no group '{request.group_name}'; the robot has {groups}",
-            )
-            return answer
+        self._model.group(request.group_name)
         answer.urdf_string = str(self._node.get_parameter("robot_description").value)
         answer.error_code = error_code(MoveItErrorCode.SUCCESS)
         return answer

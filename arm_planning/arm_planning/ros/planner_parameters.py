@@ -14,6 +14,7 @@ from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.planner import OMPL, planner_of
 from arm_planning.planners.registry import checked_parameter, planner_name, planner_parameters
 from arm_planning.request import PlanRequest
+from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.answering import offer_service
 
 LOGGER = logging.getLogger("move_group")
@@ -54,23 +55,15 @@ class PlannerParameters:
 class PlannerParameterServices:
     """Serves get_planner_params and set_planner_params; their answers have no error code."""
 
-    def __init__(
-        self, node: Node, parameters: PlannerParameters, groups: Mapping[str, Any]
-    ) -> None:
-        self._parameters = parameters
-        self._groups = groups
+    def __init__(self, node: Node, parameters: PlannerParameters, model: PlanningModel) -> None:
+        self._parameters, self._model = parameters, model
         group = ReentrantCallbackGroup()
         offer_service(node, GetPlannerParams, "get_planner_params", self._get, group=group)
         offer_service(node, SetPlannerParams, "set_planner_params", self._set, group=group)
 
     def _get(self, request: Any, answer: GetPlannerParams.Response) -> GetPlannerParams.Response:
-        try:
-            planner = self._planner(request)
-            known = planner_parameters(planner)
-        except PlanningError as error:
-            LOGGER.error("get_planner_params: %s", error)
-            return answer
-        values = {**known, **self._parameters.of(planner, request.group)}
+        planner = self._planner(request)
+        values = {**planner_parameters(planner), **self._parameters.of(planner, request.group)}
         answer.params = PlannerParams(
             keys=list(values), values=[f"{value:g}" for value in values.values()]
         )
@@ -98,10 +91,6 @@ class PlannerParameterServices:
                 f"the pipeline '{request.pipeline_id}' has no planner with parameters; "
                 f"'{OMPL}' has",
             )
-        if request.group and request.group not in self._groups:
-            groups = ", ".join(self._groups)
-            raise PlanningError(
-                MoveItErrorCode.INVALID_GROUP_NAME,
-                f"no group '{request.group}'; the robot has {groups}",
-            )
+        if request.group:
+            self._model.group(request.group)
         return planner_of(PlanRequest(request.group, (), planner=request.planner_config))

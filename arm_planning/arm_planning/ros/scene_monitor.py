@@ -1,11 +1,12 @@
-"""The present planning scene: changed by topics and services, published as it changes."""
+"""The present planning scene: changed by topics, services and the simulated world; published."""
 
 import logging
 import threading
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
 
+import numpy as np
 from moveit_msgs.msg import AttachedCollisionObject, PlanningSceneWorld
 from moveit_msgs.msg import CollisionObject as ObjectMessage
 from moveit_msgs.msg import PlanningScene as SceneMessage
@@ -14,7 +15,11 @@ from octomap_msgs.msg import OctomapWithPose
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.serialization import deserialize_message
+from visualization_msgs.msg import Marker, MarkerArray
 
+from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.model import CollisionModel
@@ -22,26 +27,31 @@ from arm_planning.errors import PlanningError
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.answering import offer_service
 from arm_planning.ros.convert import robot_state_message
-from arm_planning.ros.convert_scene import frames_in, scene_change_of
+from arm_planning.ros.convert_scene import frames_in, scene_change_of, scene_message
 from arm_planning.ros.joint_state_monitor import JointStateMonitor
-from arm_planning.ros.scene_messages import scene_message
 from arm_planning.ros.transform_reader import TransformReader
-from arm_planning.ros.world_objects import WorldObjects
 from arm_planning.scene.frames import LinkPoses, frame_names
 from arm_planning.scene.objects import AttachedBody, CollisionObject
 from arm_planning.scene.occupancy_map import OccupancyMap
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import SceneOutcome, change_scene
 from arm_planning.scene.shapes import TriangleMesh
-from arm_planning.scene.world_things import followed
+from arm_planning.scene.world_things import WorldSolid, followed, objects_of_solids
 
 SERVICES_DEPTH = 10
 MONITORED_DEPTH = 100
+WORLD_TOPIC = "/world_markers"
+WORLD_DEPTH = 10
 PUBLISH_HZ = 4.0
 MOVED = 1e-6
 """Change of a joint from which the state is published again, rad or m."""
+SOLIDS = {
+    Marker.CUBE: "box",
+    Marker.SPHERE: "ball",
+    Marker.CYLINDER: "cylinder",
+    Marker.TRIANGLE_LIST: "triangles",
+}
 LOGGER = logging.getLogger("move_group")
-
 ThingT = TypeVar("ThingT", CollisionObject, AttachedBody)
 
 
@@ -285,3 +295,45 @@ def _as_before(
     unusable = set(names)
     restored = {name: thing for name, thing in before.items() if name in unusable}
     return {name: thing for name, thing in after.items() if name not in unusable} | restored
+
+
+class WorldObjects:
+    """Reads the world's shapes as they are drawn; robots are not among them.
+
+    One thread at a time.
+    """
+
+    def __init__(self, node: Node, robot: RigidTransform, links: Collection[str]) -> None:
+        """Listen to the simulation; the robot's root is fixed at this pose in its world."""
+        self._world, self._links = robot.inverse(), links
+        self._polled = PolledSubscriptions(node)
+        latched = QoSProfile(depth=WORLD_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._subscription = self._polled.subscribe(MarkerArray, WORLD_TOPIC, latched)
+        self._things: Mapping[str, CollisionObject] = {}
+
+    def take(self) -> Mapping[str, CollisionObject]:
+        """Return the things by their names; the same mapping until they have moved or changed."""
+        heard = [raw for raw, _ in self._polled.take(self._subscription, WORLD_DEPTH)]
+        if heard:
+            # Each message has all shapes.
+            solids = solids_of(deserialize_message(heard[-1], MarkerArray).markers)
+            self._things = objects_of_solids(solids, self._world, self._links)
+        return self._things
+
+
+def solids_of(markers: Iterable[Marker]) -> Iterator[WorldSolid]:
+    """Yield the solids that markers show; the namespace of a marker is the thing's name."""
+    for marker in markers:
+        if marker.action != Marker.ADD or marker.type not in SOLIDS:
+            continue
+        position, rotation = marker.pose.position, marker.pose.orientation
+        yield WorldSolid(
+            marker.ns,
+            SOLIDS[marker.type],
+            (marker.scale.x, marker.scale.y, marker.scale.z),
+            RigidTransform(
+                (position.x, position.y, position.z),
+                (rotation.x, rotation.y, rotation.z, rotation.w),
+            ),
+            np.array([(point.x, point.y, point.z) for point in marker.points]).reshape(-1, 3),
+        )

@@ -1,29 +1,38 @@
-"""The node servo_node: takes moveit_servo's commands, and jogs the robot."""
+"""The node servo_node: its parameters and commands, those of moveit_servo, and its scene."""
 
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from control_msgs.msg import JointJog
 from geometry_msgs.msg import PoseStamped, TwistStamped
+from moveit_msgs.msg import PlanningScene as SceneMessage
 from moveit_msgs.msg import ServoStatus
-from moveit_msgs.srv import ServoCommandType
+from moveit_msgs.srv import GetPlanningScene, ServoCommandType
+from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool
 
+from arm_node.names import describe_known
+from arm_node.parameter_values import Reader, Value, read_parameter
+from arm_node.parameters import declare_typed, type_of
+from arm_node.setting import read_settings, settings_of
 from arm_planning.errors import PlanningError
-from arm_planning.robot.model import JointPositions
+from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.ros.answering import offer_service
 from arm_planning.ros.convert import NANOSECONDS, pose_of, seconds, vector_of
+from arm_planning.ros.convert_scene import scene_change_of
 from arm_planning.ros.joint_state_monitor import JointStateMonitor
-from arm_planning.ros.robot_setup import PlanningSetup
+from arm_planning.ros.robot_setup import PlanningSetup, values_below
 from arm_planning.ros.servo_output import ServoOutput
-from arm_planning.ros.servo_scene import ServoScene
+from arm_planning.scene.scene import PlanningScene
+from arm_planning.scene.scene_changes import change_scene
 from arm_planning.servo.commands import (
     CommandType,
     JogCommand,
@@ -37,6 +46,7 @@ from arm_planning.servo.settings import ServoSettings
 from arm_planning.servo.status import JogStatus, StatusCode
 
 DEPTH = 10
+SCENE_DEPTH = 100
 POLLS = 4
 """How often in a period it is looked whether the period is over."""
 IDLE_S = 0.5
@@ -49,6 +59,15 @@ FARTHEST_BEHIND = 0.3
 EARLY_S = 1e-6
 LATE = 5
 """Periods that are caught up; after more the jog starts anew from the robot's state."""
+PREFIX = "moveit_servo"
+NOT_USED = """
+    active_subgroup apply_twist_commands_about_ee_frame cartesian_command_in_topic
+    check_octomap_collisions collision_check_rate joint_command_in_topic joint_topic
+    is_primary_planning_scene_monitor max_expected_latency monitored_planning_scene_topic
+    pose_command_in_topic publish_joint_accelerations singularity_step_scale
+    smoothing_filter_plugin_name status_topic thread_priority use_smoothing
+    """
+"""Parameters that moveit_servo has and this node does not need."""
 LOGGER = logging.getLogger("servo_node")
 
 
@@ -270,3 +289,90 @@ class JogServer:
         if now_s - self._warned_s >= WARN_EVERY_S:
             self._warned_s = now_s
             LOGGER.warning("%s", sentence)
+
+
+class ServoScene:
+    """Follows the scene that move_group publishes. Executor's thread.
+
+    Attributes:
+        scene: the scene; the same object until something in it changes but the robot's state.
+    """
+
+    def __init__(self, node: Node, model: PlanningModel, scene: PlanningScene) -> None:
+        self.scene = scene
+        self._model = model
+        self._is_asked = False
+        self._client = node.create_client(GetPlanningScene, "get_planning_scene")
+        node.create_subscription(SceneMessage, "monitored_planning_scene", self._take, SCENE_DEPTH)
+
+    def ask(self) -> None:
+        """Ask move_group for its scene once it is there: it publishes changes only."""
+        if self._is_asked or not self._client.service_is_ready():
+            return
+        self._is_asked = True
+        asked = self._client.call_async(GetPlanningScene.Request())
+        asked.add_done_callback(self._take_answer)
+
+    def _take_answer(self, future: Any) -> None:
+        if (answer := future.result()) is not None:
+            self._take(answer.scene)
+
+    def _take(self, message: SceneMessage) -> None:
+        if message.is_diff and not _changes_more_than_the_state(message):
+            return
+        try:
+            change = scene_change_of(self._model, message, LOGGER.warning)
+            self.scene = change_scene(self._model, self.scene, change, LOGGER.warning).scene
+        except PlanningError as error:
+            LOGGER.error("the planning scene cannot be used: %s", error)
+
+
+def _changes_more_than_the_state(message: SceneMessage) -> bool:
+    return bool(
+        message.world.collision_objects
+        or message.world.octomap.octomap.id
+        or message.robot_state.attached_collision_objects
+        or message.allowed_collision_matrix.entry_names
+        or message.fixed_frame_transforms
+        or message.link_padding
+        or message.link_scale
+    )
+
+
+def read_servo_settings(node: Node) -> ServoSettings:
+    """Return the settings; a name that moveit_servo does not have is warned of.
+
+    Raises:
+        ParameterValueError: a value is invalid.
+    """
+
+    def value(
+        name: str,
+        default: object,
+        read: Reader[Value],
+        description: str,
+        /,
+        *,
+        read_only: bool = True,
+    ) -> Value:
+        full = f"{PREFIX}.{name}"
+        given = node.has_parameter(full)
+        found = read_parameter(full, node.get_parameter(full).value if given else default, read)
+        if not given:
+            descriptor = ParameterDescriptor(description=description, read_only=read_only)
+            declare_typed(node, full, type_of(default), default, descriptor)
+        return found
+
+    settings = read_settings(ServoSettings, value)
+    for warning in unknown_names(set(values_below(node, PREFIX))):
+        LOGGER.warning("%s", warning)
+    return settings
+
+
+def unknown_names(names: set[str]) -> Iterator[str]:
+    """Yield a sentence for each parameter that moveit_servo does not have."""
+    known = {each.name for each in settings_of(ServoSettings)}
+    for name in sorted(names - known):
+        if name.partition(".")[0] in NOT_USED.split():
+            continue
+        yield f"there is no parameter {PREFIX}.{name}; {describe_known(name, known)}"

@@ -18,12 +18,12 @@ from std_msgs.msg import Header, String
 from arm_description.errors import DescriptionError
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.qos import LATCHED, NEWEST
-from arm_planning.collision.seen_robot import PADDING_M, SeenRobot
+from arm_planning.collision.body_filter import PADDING_M, SeenRobot
 from arm_planning.errors import PerceptionError, PlanningError
 from arm_planning.perception.table_objects import Crop, TableTarget, objects_in_view
 from arm_planning.ros.answering import offer_service
+from arm_planning.ros.convert_scene import object_message
 from arm_planning.ros.point_clouds import points_of
-from arm_planning.ros.scene_messages import object_message
 from arm_planning.ros.transform_reader import TransformReader
 
 SERVICE = "get_planning_scene_mycobot"

@@ -27,9 +27,13 @@ from arm_planning.robot.limits import joint_limit_settings
 from arm_planning.robot.model import PlanningModel
 from arm_planning.robot.srdf import parse_srdf
 from arm_planning.ros.convert import trajectory_message
-from arm_planning.ros.convert_scene import scene_change_of
+from arm_planning.ros.convert_scene import (
+    attached_message,
+    matrix_message,
+    object_message,
+    scene_change_of,
+)
 from arm_planning.ros.plan_display import PlanDisplay
-from arm_planning.ros.scene_messages import attached_message, matrix_message, object_message
 from arm_planning.scene.objects import CollisionObject
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import change_scene

@@ -11,8 +11,7 @@ from rclpy.qos import QoSProfile
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_planning.errors import PlanningError
 from arm_planning.robot.model import PlanningModel
-from arm_planning.ros.convert_scene import scene_change_of
-from arm_planning.ros.scene_messages import object_message
+from arm_planning.ros.convert_scene import object_message, scene_change_of
 from arm_planning.scene.objects import CollisionObject
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import change_scene

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.collision.seen_robot import SeenRobot
+from arm_planning.collision.body_filter import SeenRobot
 from arm_planning.errors import PlanningError
 
 SHAPE = "<origin xyz='{x} 0 0'/><geometry>{geometry}</geometry>"

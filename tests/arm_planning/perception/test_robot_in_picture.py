@@ -5,7 +5,7 @@ import pytest
 from robots import collision, joint, link, robot
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.collision.seen_robot import SeenRobot
+from arm_planning.collision.body_filter import SeenRobot
 from arm_planning.perception.table import find_things
 from arm_planning.perception.table_objects import Crop, objects_in_view
 from arm_planning.perception.testing import TableThing, is_found, look, noisy, tutorial_camera

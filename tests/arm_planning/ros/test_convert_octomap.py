@@ -14,9 +14,12 @@ from arm_planning.collision.model import CollisionModel
 from arm_planning.errors import PlanningError
 from arm_planning.robot.build import planning_model
 from arm_planning.robot.srdf import parse_srdf
-from arm_planning.ros.convert_octomap import octomap_change_of, octomap_message
-from arm_planning.ros.convert_scene import scene_change_of
-from arm_planning.ros.scene_messages import scene_message
+from arm_planning.ros.convert_scene import (
+    octomap_change_of,
+    octomap_message,
+    scene_change_of,
+    scene_message,
+)
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.occupancy_map import OCTOMAP, OccupancyMap
 from arm_planning.scene.octree import Cubes

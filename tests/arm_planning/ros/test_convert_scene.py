@@ -17,8 +17,7 @@ from planar_robot import planar_model
 from shape_msgs.msg import Mesh, MeshTriangle, Plane, SolidPrimitive
 
 from arm_planning.errors import PlanningError
-from arm_planning.ros.convert_scene import object_change_of, scene_change_of
-from arm_planning.ros.scene_messages import scene_message
+from arm_planning.ros.convert_scene import object_change_of, scene_change_of, scene_message
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import change_scene
 

@@ -19,7 +19,7 @@ class Services:
     def __init__(self) -> None:
         self.parameters = PlannerParameters()
         self._answers: dict[str, Callable[[Any, Any], Any]] = {}
-        PlannerParameterServices(self, self.parameters, planar_model().groups)
+        PlannerParameterServices(self, self.parameters, planar_model())
 
     def create_service(self, _kind: type, name: str, answer: Any, **_options: Any) -> None:
         self._answers[name] = answer

@@ -3,7 +3,7 @@ from planning_scenes import CUBE, at
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.ros.scene_messages import object_message
+from arm_planning.ros.convert_scene import object_message
 from arm_planning.scene.objects import CollisionObject, PlacedShape
 from arm_planning.scene.shapes import Cone, Plane
 

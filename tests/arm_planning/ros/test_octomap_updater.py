@@ -5,7 +5,7 @@ import pytest
 from arm_description.resources import ResourceFinder
 from arm_planning.configuration import move_group_parameters
 from arm_planning.errors import PlanningError
-from arm_planning.ros.octomap_settings import PLUGIN, octomap_settings
+from arm_planning.ros.octomap_updater import PLUGIN, octomap_settings
 
 GIVEN = {"sensors": ["eye"], "eye.sensor_plugin": PLUGIN, "eye.point_cloud_topic": "/points"}
 

@@ -1,4 +1,4 @@
-from arm_planning.ros.servo_parameters import unknown_names
+from arm_planning.ros.servo import unknown_names
 
 
 def test_moveit_servos_names_are_known_and_others_are_not():
