@@ -3,19 +3,14 @@
 Imports are kept light: nothing here imports rclpy before `prepare_environment` has run.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from arm_node.public_names import on_first_use
 
 if TYPE_CHECKING:
-    from arm_node.environment import UnusableEnvironmentError, prepare_environment
+    from arm_node.environment import UnusableEnvironmentError as UnusableEnvironmentError
+    from arm_node.environment import prepare_environment as prepare_environment
 
-__all__ = ["UnusableEnvironmentError", "prepare_environment"]
-
-
-def __getattr__(name: str) -> Any:
-    # Imported on first use: `arm --help` needs only this package's text functions, and importing
-    # the environment would take a fifth of its time.
-    if name not in __all__:
-        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    from arm_node import environment
-
-    return getattr(environment, name)
+# `arm --help` needs only this package's text functions, and importing the environment would take a
+# fifth of its time.
+__getattr__, __dir__ = on_first_use(__name__)

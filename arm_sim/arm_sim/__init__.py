@@ -6,66 +6,37 @@
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from arm_node.collection import imports_kept
+from arm_node.public_names import on_first_use
 
 if TYPE_CHECKING:
-    from arm_gazebo.world.contacts import Contact
-    from arm_sim.cameras import Camera
-    from arm_sim.controllers import ControllerHandle
-    from arm_sim.errors import ArmSimError, CallError, GoalError, UnknownNameError
-    from arm_sim.goals import Goal
-    from arm_sim.joints import Joints, JointState
-    from arm_sim.robots import NAMED_ROBOTS, NamedRobot
-    from arm_sim.simulation import Simulation
-    from arm_sim.snapshots import SavedState
-    from arm_sim.trajectory import JointTrajectory
-
-__all__ = [
-    "NAMED_ROBOTS",
-    "ArmSimError",
-    "CallError",
-    "Camera",
-    "Contact",
-    "ControllerHandle",
-    "Goal",
-    "GoalError",
-    "JointState",
-    "JointTrajectory",
-    "Joints",
-    "NamedRobot",
-    "SavedState",
-    "Simulation",
-    "UnknownNameError",
-]
+    from arm_gazebo.world.contacts import Contact as Contact
+    from arm_sim.cameras import Camera as Camera
+    from arm_sim.controllers import ControllerHandle as ControllerHandle
+    from arm_sim.errors import ArmSimError as ArmSimError
+    from arm_sim.errors import CallError as CallError
+    from arm_sim.errors import GoalError as GoalError
+    from arm_sim.errors import UnknownNameError as UnknownNameError
+    from arm_sim.goals import Goal as Goal
+    from arm_sim.joints import Joints as Joints
+    from arm_sim.joints import JointState as JointState
+    from arm_sim.robots import NAMED_ROBOTS as NAMED_ROBOTS
+    from arm_sim.robots import NamedRobot as NamedRobot
+    from arm_sim.simulation import Simulation as Simulation
+    from arm_sim.snapshots import SavedState as SavedState
+    from arm_sim.trajectory import JointTrajectory as JointTrajectory
 
 MUJOCO_GL = "MUJOCO_GL"
 
-_EXPORTS = {
-    "arm_gazebo.world.contacts": ("Contact",),
-    "arm_sim.cameras": ("Camera",),
-    "arm_sim.controllers": ("ControllerHandle",),
-    "arm_sim.errors": ("ArmSimError", "CallError", "GoalError", "UnknownNameError"),
-    "arm_sim.goals": ("Goal",),
-    "arm_sim.joints": ("JointState", "Joints"),
-    "arm_sim.robots": ("NAMED_ROBOTS", "NamedRobot"),
-    "arm_sim.simulation": ("Simulation",),
-    "arm_sim.snapshots": ("SavedState",),
-    "arm_sim.trajectory": ("JointTrajectory",),
-}
-_MODULE_OF = {name: module for module, names in _EXPORTS.items() for name in names}
+_import_name, __dir__ = on_first_use(__name__)
 
 
 def __getattr__(name: str) -> Any:
-    # A public name is imported on first use: importing all of them takes as long as a start.
-    if name not in _MODULE_OF:
-        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    # Importing all of them takes as long as a start.
     with _without_window_library(), imports_kept():
-        value = getattr(import_module(_MODULE_OF[name]), name)
-    globals()[name] = value
-    return value
+        return _import_name(name)
 
 
 @contextmanager
@@ -82,7 +53,3 @@ def _without_window_library() -> Iterator[None]:
         yield
     finally:
         os.environ.pop(MUJOCO_GL, None)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
