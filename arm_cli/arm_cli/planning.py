@@ -53,7 +53,7 @@ def _srdf_of(urdf: str, options: argparse.Namespace) -> str:
     from arm_description.urdf.parser import ignore_remark, parse_urdf
     from arm_planning.collision.mesh_pieces import MeshPieces
     from arm_planning.errors import PlanningError
-    from arm_planning.robot.srdf_writer import srdf_text
+    from arm_planning.robot.srdf import srdf_text
     from arm_planning.srdf_maker import make_srdf
 
     try:

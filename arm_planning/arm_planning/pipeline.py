@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.collision.contact import BodyKind, CollisionContact
+from arm_planning.collision.contact import BodyKind
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.motion_proof import MotionProof, Obstruction
 from arm_planning.constraints.evaluation import ConstraintEvaluator
@@ -78,35 +78,21 @@ def start_state(group: JointGroup, scene: PlanningScene) -> StartState:
 
 
 class SceneChecker:
-    """Collision checks and proofs in one scene: what planners ask. For one thread at a time."""
+    """Collision checks and proofs in one scene: a `StateChecker`. For one thread at a time."""
 
     def __init__(self, model: CollisionModel) -> None:
         self.model = model
-        self.proof = MotionProof(model)
-
-    def is_free(self, q: Array) -> bool:
-        """Return whether the robot is free at positions of the group, (n,)."""
-        return self.model.is_free(q)
-
-    def free_count(self, states: Array, clearance_m: float = 0.0) -> int:
-        """Return how many states, (k, n), are free before the first that is not."""
-        return self.model.free_count(states, clearance_m)
-
-    def is_free_edge(self, a: Array, b: Array) -> bool:
-        """Return whether all states on the straight line between two are free."""
-        return self.proof.is_free_edge(a, b)
-
-    def prove(self, path: Array, deviation: Array | None = None) -> Obstruction | None:
-        """Return None if every state on a polyline, and within the deviation of it, is free."""
-        return self.proof.prove(path, deviation)
+        self.is_free, self.free_count, self.contacts = (
+            model.is_free,
+            model.free_count,
+            model.contacts,
+        )
+        proof = MotionProof(model)
+        self.is_free_edge, self.prove = proof.is_free_edge, proof.prove
 
     def prove_driven(self, trajectory: TimedTrajectory) -> Obstruction | None:
         """Return None if the points' lines and the curve that a controller drives are free."""
         return self.prove(trajectory.positions, chord_deviation(trajectory))
-
-    def contacts(self, q: Array) -> tuple[CollisionContact, ...]:
-        """Return what touches at positions of the group."""
-        return self.model.contacts(q)
 
 
 def check_start(checker: SceneChecker, start: Array) -> None:

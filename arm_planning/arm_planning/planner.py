@@ -24,8 +24,7 @@ from arm_planning.constraints.constraints import (
 )
 from arm_planning.constraints.evaluation import ConstraintEvaluator, ConstraintResult
 from arm_planning.errors import MoveItErrorCode, PlanningError
-from arm_planning.kinematics.group_kinematics import GroupKinematics
-from arm_planning.kinematics.settings import KinematicsSettings
+from arm_planning.kinematics.group_kinematics import GroupKinematics, KinematicsSettings
 from arm_planning.pipeline import (
     SceneChecker,
     Timing,
@@ -272,8 +271,8 @@ class Planner:
         """
         scene = scene or self.scene
         name, offset = link or ("", RigidTransform())
-        solver = self._kinematics(group, scene).of(name)
-        settings = self._settings.get(group, KinematicsSettings())
+        kinematics = self._kinematics(group, scene)
+        solver, settings = kinematics.of(name), kinematics.settings
         q = solver.group.positions(scene.positions)
         checks: list[Callable[[Array], bool]] = []
         if avoids_collisions:
@@ -325,13 +324,14 @@ class Planner:
         scene = replace(scene, positions=start_state(own, scene).positions)
         evaluator = self._evaluator(path, own, scene)
         checker = self.checker(scene, group)
+        kinematics = self._kinematics(group, scene)
         found = cartesian_path(
-            self._kinematics(group, scene).of(link),
+            kinematics.of(link),
             own.positions(scene.positions),
             way_points,
             max_step_m,
             relative=relative,
-            orientation=self._settings.get(group, KinematicsSettings()).orientation,
+            orientation=kinematics.settings.orientation,
             jumps=jumps,
             checker=checker if avoids_collisions else None,
             violation=evaluator.violation if path else None,
@@ -535,7 +535,8 @@ class Planner:
         kept = self._inverse.get(group)
         is_same = kept is not None and same_posture(kept[0], outside, ())
         if kept is None or not is_same:
-            kept = outside, GroupKinematics(self.model, group, outside)
+            settings = self._settings.get(group, KinematicsSettings())
+            kept = outside, GroupKinematics(self.model, group, outside, settings)
             self._inverse[group] = kept
         return kept[1]
 

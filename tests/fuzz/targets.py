@@ -69,8 +69,7 @@ def _read_xacro(folder: Path, name: str, data: bytes) -> bool:
 def _read_srdf(_folder: Path, name: str, data: bytes) -> bool:
     from arm_description.urdf.parser import parse_urdf
     from arm_planning.robot.build import planning_model
-    from arm_planning.robot.srdf import parse_srdf
-    from arm_planning.robot.srdf_writer import srdf_text
+    from arm_planning.robot.srdf import parse_srdf, srdf_text
 
     robot = parse_urdf(seeds.URDF, remark=lambda _: None)
     text = data.decode("utf-8", "surrogateescape")

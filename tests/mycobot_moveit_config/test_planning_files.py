@@ -8,7 +8,7 @@ import pytest
 from arm_description import expand_xacro, parse_urdf, resolve_uri
 from arm_node.limited_yaml import load_yaml
 from arm_node.parameter_file import flat_parameters
-from arm_planning.execution.controllers import choose_controllers, controllers_of_settings
+from arm_planning.execution import choose_controllers, controllers_of_settings
 from arm_planning.robot.build import planning_model
 from arm_planning.robot.limits import read_joint_limits
 from arm_planning.robot.model import PlanningLimits, PlanningModel

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_node.names import describe_known
-from arm_planning.collision.constant_contacts import constant_contacts
 from arm_planning.collision.contact import BodyKind, CollisionContact
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.posed_scene import PosedScene, deepest
@@ -155,8 +154,7 @@ class CollisionModel:
     def _constant_contacts(self) -> tuple[CollisionContact, ...]:
         self._posed.place(np.zeros(len(self._joints)))
         asked = np.array([self._is_checked(body) for body in self._posed.bodies])
-        found = constant_contacts(self._model, self._data, asked)
-        return deepest(map(self._posed.contact, found))
+        return deepest(self._posed.constant_contacts(asked))
 
     def _is_checked(self, body: CollisionBody | None) -> bool:
         """Return whether a body is checked against all others, moving or not."""

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_node.rigid_transform import Vector
-from arm_planning.collision.constant_contacts import GeomContact
 from arm_planning.collision.contact import BodyKind, CollisionContact
 from arm_planning.collision.reach import never_touching
 from arm_planning.collision.specification import SELF, CollisionBody, CompiledScene
@@ -143,15 +142,31 @@ class PosedScene:
         for (first, second), distance, position, frame in zip(
             found.geom.tolist(), found.dist.tolist(), found.pos, found.frame, strict=True
         ):
-            yield self.contact(GeomContact(first, second, distance, position, frame[:3]))
+            yield self._contact(first, second, distance, position, frame[:3])
 
-    def contact(self, found: GeomContact) -> CollisionContact:
+    def constant_contacts(self, asked: NDArray[np.bool_]) -> Iterator[CollisionContact]:
+        """Yield the contacts that are there in every state: of bodies that are welded together.
+
+        MuJoCo does not look for them: the robot's base and the objects of the world never move
+        against each other, nor do a gripper and what is attached to it. Its masks and excluded
+        pairs count.
+
+        Args:
+            asked: which bodies matter, (nbody,); one of a pair must.
+        """
+        for first, second in _welded(self.model, self.data, asked):
+            line = np.zeros(6)
+            distance = mujoco.mj_geomDistance(self.model, self.data, first, second, 0.0, line)
+            if distance < 0.0:
+                # It leads from the surface of the first, inside of the second, to the second's.
+                normal = (line[:3] - line[3:]) / -distance
+                yield self._contact(first, second, distance, (line[:3] + line[3:]) / 2, normal)
+
+    def _contact(
+        self, first_geom: int, second_geom: int, distance: float, position: Array, normal: Array
+    ) -> CollisionContact:
         """Name the bodies: links before what is attached, that before objects, then by name."""
-        first, second, normal = (
-            self._body_of(found.first),
-            self._body_of(found.second),
-            found.normal,
-        )
+        first, second = self._body_of(first_geom), self._body_of(second_geom)
         if (ORDER[first.kind], first.name) > (ORDER[second.kind], second.name):
             first, second, normal = second, first, -normal
         return CollisionContact(
@@ -159,8 +174,8 @@ class PosedScene:
             second.name,
             first.kind,
             second.kind,
-            -found.distance,
-            _vector(found.position),
+            -distance,
+            _vector(position),
             _vector(normal),
         )
 
@@ -189,3 +204,27 @@ def _not_finite(q: object) -> PlanningError:
 def _vector(values: Array) -> Vector:
     x, y, z = values.tolist()
     return (x, y, z)
+
+
+def _welded(
+    model: mujoco.MjModel, data: mujoco.MjData, asked: NDArray[np.bool_]
+) -> list[tuple[int, int]]:
+    """Return pairs of geoms on bodies welded together whose bounding spheres overlap."""
+    body, weld = model.geom_bodyid, model.body_weldid[model.geom_bodyid]
+    firsts, every = np.flatnonzero(asked[body]), np.arange(model.ngeom)
+    mine = body[firsts, None]
+    may = (weld[firsts, None] == weld) & (mine != body)
+    # Both are asked for: the pair comes once.
+    may &= ~asked[body] | (every > firsts[:, None])
+    may &= (model.geom_contype[firsts, None] & model.geom_conaffinity != 0) | (
+        model.geom_conaffinity[firsts, None] & model.geom_contype != 0
+    )
+    rows, seconds = np.nonzero(may)
+    firsts = firsts[rows]
+    low, high = np.sort([body[firsts], body[seconds]], axis=0)
+    near = ~np.isin((low << 16) + high, model.exclude_signature)
+    # A plane has no radius: it is endless.
+    radius = np.where(model.geom_rbound > 0.0, model.geom_rbound, np.inf)
+    apart = np.linalg.norm(data.geom_xpos[firsts] - data.geom_xpos[seconds], axis=1)
+    near &= apart < radius[firsts] + radius[seconds]
+    return list(zip(firsts[near].tolist(), seconds[near].tolist(), strict=True))

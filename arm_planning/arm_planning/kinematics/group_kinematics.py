@@ -1,16 +1,74 @@
-"""Inverse kinematics of a group for whichever link a pose is for.
+"""Inverse kinematics of a group for whichever link a pose is for, and its settings.
 
 Making one takes 1 ms, and 10 ms more when a search first starts anew; so keep them.
 """
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_node.names import describe_known
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.kinematics.search import Orientation
 from arm_planning.robot.model import JointPositions, PlanningModel
+from arm_planning.setting_values import number, switch
 
 Array = NDArray[np.float64]
+TIMEOUT, POSITION_ONLY = "kinematics_solver_timeout", "position_only_ik"
+
+
+@dataclass(frozen=True, slots=True)
+class KinematicsSettings:
+    """How poses of a group are solved.
+
+    Attributes:
+        timeout_s: length of a search that asks for none; 0 for the default.
+        position_only: whether the orientation of a pose does not matter.
+    """
+
+    timeout_s: float = 0.0
+    position_only: bool = False
+
+    @property
+    def orientation(self) -> Orientation:
+        """What a solution owes to a pose's orientation."""
+        return Orientation.ANY if self.position_only else Orientation.EXACT
+
+
+def kinematics_settings(
+    values: Mapping[str, object], model: PlanningModel, warn: Callable[[str], None]
+) -> dict[str, KinematicsSettings]:
+    """Return the settings of each group that has some.
+
+    Other keys choose or tune solvers that are not here, and are passed over.
+
+    Args:
+        values: the values below robot_description_kinematics, with dotted names.
+        model: the robot.
+        warn: takes a sentence about a group that does not exist.
+
+    Raises:
+        PlanningError: FAILURE: a value has the wrong type, or a timeout is negative.
+    """
+    groups = dict.fromkeys(name.partition(".")[0] for name in values)
+    for group in groups:
+        if group not in model.groups:
+            known = describe_known(group, model.groups, "the robot has")
+            warn(f"robot_description_kinematics names the group '{group}'; {known}")
+    return {
+        group: KinematicsSettings(
+            number(*_given(values, f"{group}.{TIMEOUT}", 0.0), least=0.0),
+            switch(*_given(values, f"{group}.{POSITION_ONLY}", default=False)),
+        )
+        for group in groups
+        if group in model.groups
+    }
+
+
+def _given(values: Mapping[str, object], name: str, default: object) -> tuple[str, object]:
+    return f"robot_description_kinematics.{name}", values.get(name, default)
 
 
 class GroupKinematics:
@@ -20,12 +78,18 @@ class GroupKinematics:
         model: the robot.
         group: name of the group.
         positions: positions of joints outside of the group; 0 for those not named.
+        settings: how the group's poses are solved.
     """
 
     def __init__(
-        self, model: PlanningModel, group: str, positions: JointPositions | None = None
+        self,
+        model: PlanningModel,
+        group: str,
+        positions: JointPositions | None = None,
+        settings: KinematicsSettings = KinematicsSettings(),
     ) -> None:
         self._model, self._group, self._positions = model, group, positions
+        self.settings = settings
         self._by_link: dict[str, InverseKinematics] = {}
 
     def of(self, link: str = "") -> InverseKinematics:

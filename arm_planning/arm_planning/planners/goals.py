@@ -1,9 +1,8 @@
 """States of a group that satisfy a goal: free, within the limits, near the start first."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 from arm_planning.constraints.constraints import MotionConstraints
 from arm_planning.constraints.evaluation import ConstraintEvaluator, LinkPose
 from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.kinematics.group_kinematics import GroupKinematics
 from arm_planning.planners.goal_poses import poses_of
 from arm_planning.planners.problem import NO_DEADLINE, Deadline, StateChecker
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
@@ -29,28 +29,6 @@ SLACK = 1e-4
 """How much inverse kinematics may miss a tolerance, rad or m."""
 FULL_TURN = 2.0 * math.pi
 DOING = "looking for a goal state"
-
-
-class Inverse(Protocol):
-    """Inverse kinematics of a group, for any of its links."""
-
-    def __call__(
-        self, link: str, pose: Array, seed: Array, *, most: int, random_seed: int, any_turn: bool
-    ) -> Sequence[Array]:
-        """Return positions, (n,), within the limits that bring a link to a pose.
-
-        Args:
-            link: the link.
-            pose: its pose in the planning frame, (4, 4).
-            seed: where to start, (n,).
-            most: number of different solutions at most, near the seed first; 1: the first found.
-            random_seed: seed of random starts.
-            any_turn: whether the orientation does not matter.
-
-        Raises:
-            PlanningError: there is none; the message says why.
-        """
-        ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,7 +55,7 @@ class GoalSampler:
     group: JointGroup
     positions: JointPositions
     pose: LinkPose
-    inverse: Inverse | None
+    inverse: GroupKinematics | None
     checker: StateChecker
     start: Array
     seed: int = 0

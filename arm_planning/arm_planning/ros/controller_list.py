@@ -9,7 +9,7 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
 from arm_planning.errors import MoveItErrorCode, PlanningError
-from arm_planning.execution.controllers import ControllerKind, TrajectoryController
+from arm_planning.execution import ControllerKind, TrajectoryController
 
 TIMEOUT_S = 2.0
 KINDS = {

@@ -13,8 +13,7 @@ from std_srvs.srv import Empty
 from arm_node.executor_thread import ExecutorThread
 from arm_node.qos import LATCHED
 from arm_planning.errors import MoveItErrorCode
-from arm_planning.execution.controllers import controllers_of_settings
-from arm_planning.execution.settings import EXECUTION, ExecutionSettings
+from arm_planning.execution import EXECUTION, ExecutionSettings, controllers_of_settings
 from arm_planning.ros.answering import BusyLimit, offer_service
 from arm_planning.ros.controller_list import ControllerList
 from arm_planning.ros.convert import error_code

@@ -18,14 +18,13 @@ from arm_node.qos import LATCHED
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.errors import SettingError
-from arm_planning.kinematics.settings import KinematicsSettings, kinematics_settings
+from arm_planning.kinematics.group_kinematics import KinematicsSettings, kinematics_settings
 from arm_planning.planner import resting_positions
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits, cartesian_limits
 from arm_planning.robot.build import planning_model
 from arm_planning.robot.limits import joint_limit_settings
 from arm_planning.robot.model import PlanningModel
-from arm_planning.robot.srdf import parse_srdf
-from arm_planning.robot.srdf_writer import srdf_text
+from arm_planning.robot.srdf import parse_srdf, srdf_text
 from arm_planning.scene.allowed_collisions import allowed_collisions
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.setting_values import number, switch

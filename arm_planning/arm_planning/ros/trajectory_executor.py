@@ -15,13 +15,13 @@ from rclpy.node import Node
 
 from arm_node.names import listing
 from arm_planning.errors import MoveItErrorCode, PlanningError
-from arm_planning.execution.controllers import (
+from arm_planning.execution import (
     ControllerKind,
+    ExecutionSettings,
     TrajectoryController,
     choose_controllers,
     part_for,
 )
-from arm_planning.execution.settings import ExecutionSettings
 from arm_planning.ros.convert import trajectory_message
 from arm_planning.ros.joint_state_monitor import JointStateMonitor
 from arm_planning.ros.noted_action_client import NotedActionClient

@@ -11,17 +11,42 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_planning.robot.model import JointGroup
+from arm_planning.timing import stepped_motion
+from arm_planning.timing.parameterize import RESAMPLE_DT_S
 from arm_planning.timing.reachable_speeds import ReachableSpeeds
+from arm_planning.timing.stepped_motion import MotionLimits
+from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
-
 CELL_S = 0.01
 """Length of the cells in which the motion is looked at."""
 FEWEST_CELLS, MOST_CELLS = 100, 5000
 
 
+def within_limits(
+    motion: Callable[[Array], Array], duration_s: float, group: JointGroup, bounds: MotionLimits
+) -> TimedTrajectory:
+    """Return the trajectory of a motion, slowed down where its joints could not follow.
+
+    Args:
+        motion: joint positions at times from 0 to the duration, (k,) to (k, n); rests at both ends.
+        duration_s: above 0.
+        group: the group.
+        bounds: the limits.
+    """
+    able = _slowed(motion, duration_s, bounds)
+    # A second look sees what the cells of the first were too coarse for.
+    able = _slowed(able.positions, able.duration_s, bounds)
+    haste = float(bounds.acceleration[np.isfinite(bounds.acceleration)].max(initial=1.0))
+    step = stepped_motion.step_for(able.duration_s, 1, haste, RESAMPLE_DT_S, bounds.closeness)
+    states = able.positions(stepped_motion.steps(able.duration_s, step))
+    control = stepped_motion.joined([states])
+    return stepped_motion.trajectory(group.joints, control, step, bounds, RESAMPLE_DT_S)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class SlowedMotion:
+class _SlowedMotion:
     """When a motion is driven.
 
     Attributes:
@@ -48,9 +73,9 @@ class SlowedMotion:
         return self.motion(self.begins[cell] + np.clip(passed, 0.0, self.begins[1]))
 
 
-def slowed(
-    motion: Callable[[Array], Array], duration_s: float, velocity: Array, acceleration: Array
-) -> SlowedMotion:
+def _slowed(
+    motion: Callable[[Array], Array], duration_s: float, bounds: MotionLimits
+) -> _SlowedMotion:
     """Return a motion within limits, no faster than it was.
 
     Peaks shorter than a cell are not seen.
@@ -58,8 +83,7 @@ def slowed(
     Args:
         motion: joint positions at times from 0 to the duration, (k,) to (k, n); rests at both ends.
         duration_s: above 0.
-        velocity: limits, (n,).
-        acceleration: limits, (n,).
+        bounds: the limits.
     """
     count = min(max(math.ceil(duration_s / CELL_S), FEWEST_CELLS), MOST_CELLS)
     length = duration_s / count
@@ -71,8 +95,8 @@ def slowed(
         (tangents[:, :-1], bends[:, ::3]),
         (tangents[:, 1:], bends[:, 1::3]),
         np.full(count, length),
-        np.repeat(velocity[:, None], count, axis=1),
-        np.repeat(acceleration[:, None], count, axis=1),
+        np.repeat(bounds.velocity[:, None], count, axis=1),
+        np.repeat(bounds.acceleration[:, None], count, axis=1),
     )
     limits = ReachableSpeeds(
         np.minimum(limits.top, 1.0), limits.slopes, limits.offsets, limits.reach
@@ -80,7 +104,7 @@ def slowed(
     rates = np.sqrt(limits.fastest(1.0, 1.0))
     durations = 2.0 * length / (rates[:-1] + rates[1:])
     times = np.concatenate(([0.0], np.cumsum(durations)))
-    return SlowedMotion(
+    return _SlowedMotion(
         motion,
         length * np.arange(count, dtype=np.float64),
         rates[:-1],

@@ -8,8 +8,7 @@ from arm_description.urdf.robot import Robot
 from arm_planning.robot.build import planning_model
 from arm_planning.robot.default_srdf import default_srdf
 from arm_planning.robot.model import PlanningModel
-from arm_planning.robot.srdf import EndEffector, Srdf, parse_srdf
-from arm_planning.robot.srdf_writer import srdf_text
+from arm_planning.robot.srdf import EndEffector, Srdf, parse_srdf, srdf_text
 
 PAD = (
     "<collision><origin xyz='0 {y} 0.02'/><geometry><sphere radius='0.01'/></geometry></collision>"

@@ -4,7 +4,7 @@ import pytest
 from rclpy.task import Future
 
 from arm_planning.errors import MoveItErrorCode, PlanningError
-from arm_planning.execution.controllers import ControllerKind, TrajectoryController
+from arm_planning.execution import ControllerKind, TrajectoryController
 from arm_planning.ros import controller_list
 from arm_planning.ros.controller_list import ControllerList
 

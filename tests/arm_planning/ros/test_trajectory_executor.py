@@ -11,8 +11,7 @@ import pytest
 from action_msgs.msg import GoalStatus
 
 from arm_planning.errors import MoveItErrorCode
-from arm_planning.execution.controllers import ControllerKind, TrajectoryController
-from arm_planning.execution.settings import ExecutionSettings
+from arm_planning.execution import ControllerKind, ExecutionSettings, TrajectoryController
 from arm_planning.ros import trajectory_executor
 from arm_planning.ros.trajectory_executor import ExecutionManager
 from arm_planning.trajectory import TimedTrajectory

@@ -14,9 +14,13 @@ from numpy.typing import NDArray
 
 from arm_planning.errors import MissingOmplError, MoveItErrorCode, PlanningError
 from arm_planning.planners.problem import PlanningProblem, StateChecker, path_length
-from arm_planning.planners.search import check_start, check_start_is_proved, shortened_and_proved
+from arm_planning.planners.search import (
+    check_start,
+    check_start_is_proved,
+    shortened_and_proved,
+    straight_to_any,
+)
 from arm_planning.planners.space import space_of
-from arm_planning.planners.straight import straight_to_any
 
 try:
     import ompl.base

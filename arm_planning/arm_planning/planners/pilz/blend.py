@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from arm_planning.errors import InvalidPlanError, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
-from arm_planning.planners.pilz.even_cubics import even_cubics
+from arm_planning.planners.pilz.tip_motion import even_cubics
 from arm_planning.planners.pose_line import PoseLine
 from arm_planning.timing.driven_spline import DrivenSpline
 from arm_planning.trajectory import TimedTrajectory

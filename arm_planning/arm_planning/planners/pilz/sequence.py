@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from arm_planning.errors import InvalidPlanError, MoveItErrorCode, PlanningError
 from arm_planning.planners.pilz.blend import DrivenMotion, Window, window
 from arm_planning.planners.pilz.planner import Free, PilzPlanner
-from arm_planning.planners.pilz.tip_motion import CLOSENESS, checked, within_limits
+from arm_planning.planners.pilz.tip_motion import CLOSENESS, checked
 from arm_planning.planners.problem import NO_DEADLINE, Deadline
 from arm_planning.request import PlanRequest
 from arm_planning.robot.model import JointGroup, JointPositions
+from arm_planning.timing.slowed_motion import within_limits
 from arm_planning.timing.stepped_motion import MotionLimits
 from arm_planning.trajectory import TimedTrajectory
 

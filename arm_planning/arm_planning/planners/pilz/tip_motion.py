@@ -1,7 +1,6 @@
 """A joint trajectory that moves the tip along a curve with a trapezoid as its speed."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -12,13 +11,10 @@ from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
-from arm_planning.planners.pilz.even_cubics import even_cubics
 from arm_planning.planners.pose_line import PoseLine
-from arm_planning.robot.model import JointGroup, PlanningLimits
-from arm_planning.timing import stepped_motion
+from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing.driven_spline import limit_violation
-from arm_planning.timing.parameterize import RESAMPLE_DT_S
-from arm_planning.timing.slowed_motion import slowed
+from arm_planning.timing.slowed_motion import within_limits
 from arm_planning.timing.stepped_motion import MotionLimits
 from arm_planning.trajectory import TimedTrajectory
 
@@ -108,27 +104,6 @@ def tip_motion(
 
     found = within_limits(nominal, speed.duration_s, group, bounds)
     return checked(name, found, group.limits, velocity_scaling, acceleration_scaling)
-
-
-def within_limits(
-    motion: Callable[[Array], Array], duration_s: float, group: JointGroup, bounds: MotionLimits
-) -> TimedTrajectory:
-    """Return the trajectory of a motion, slowed down where its joints could not follow.
-
-    Args:
-        motion: joint positions at times from 0 to the duration, (k,) to (k, n); rests at both ends.
-        duration_s: above 0.
-        group: the group.
-        bounds: the limits.
-    """
-    able = slowed(motion, duration_s, bounds.velocity, bounds.acceleration)
-    # A second look sees what the cells of the first were too coarse for.
-    able = slowed(able.positions, able.duration_s, bounds.velocity, bounds.acceleration)
-    haste = float(bounds.acceleration[np.isfinite(bounds.acceleration)].max(initial=1.0))
-    step = stepped_motion.step_for(able.duration_s, 1, haste, RESAMPLE_DT_S, bounds.closeness)
-    states = able.positions(stepped_motion.steps(able.duration_s, step))
-    control = stepped_motion.joined([states])
-    return stepped_motion.trajectory(group.joints, control, step, bounds, RESAMPLE_DT_S)
 
 
 def checked(
@@ -249,3 +224,19 @@ class _Followed:
         else:
             gone, whole, unit = share * self._curve.angle_rad, self._curve.angle_rad, "rad"
         return f"{gone:.3f} of {whole:.3f} {unit} along its path, at ({x:.3f}, {y:.3f}, {z:.3f}) m"
+
+
+def even_cubics(points: Array, slopes: Array, shares: Array) -> Array:
+    """Return the values of cubics that meet points with given slopes, (k, n).
+
+    Args:
+        points: (m, n), at equal steps of the share from 0 to 1.
+        slopes: change per step at each point, (m, n).
+        shares: where, (k,), 0 to 1.
+    """
+    count = len(points) - 1
+    index = np.clip((shares * count).astype(np.intp), 0, count - 1)
+    t = (shares * count - index)[:, None]
+    p0, p1, v0, v1 = points[index], points[index + 1], slopes[index], slopes[index + 1]
+    bend = 3.0 * (p1 - p0) - 2.0 * v0 - v1
+    return p0 + t * (v0 + t * (bend + t * (2.0 * (p0 - p1) + v0 + v1)))

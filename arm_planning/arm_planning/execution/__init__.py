@@ -1,1 +1,0 @@
-"""Runs trajectories on controllers: which ones, from where, for how long."""
