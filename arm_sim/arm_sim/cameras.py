@@ -159,8 +159,8 @@ class RobotCameras:
     def _draw(
         self, camera: int, picture: NDArray[np.uint8] | None, depth: NDArray[np.float32] | None
     ) -> None:
-        scene, data, time_s = self._present_scene(), self._physics.data, self._physics.time_s
-        scene.pose(CameraSnapshot(0, time_s, (), data.qpos, data.mocap_pos, data.mocap_quat))
+        scene, time_s = self._present_scene(), self._physics.time_s
+        scene.pose(CameraSnapshot.of(self._physics.data, time_s))
         number = math.floor((time_s + TOLERANCE_S) * self._sensors[camera].rate_hz)
         self._drawing.draw(scene.data, camera, number, picture, depth)
 

@@ -19,7 +19,7 @@ LEAST_INTERVAL_S = 0.002
 would otherwise overload the camera process with images that nobody can look at."""
 
 
-class CameraFeed:
+class CameraFeed(StateFeed):
     """The simulation's side of its cameras. A fault of the cameras never affects the physics.
 
     A child process renders and publishes the images. It receives a state whenever a frame is due.
@@ -54,31 +54,13 @@ class CameraFeed:
         backend_order(render_backend)
         self._cameras = tuple(cameras)
         settings = CameraSettings(self._cameras, seed, render_backend)
-        self._feed = StateFeed(make_process(settings, ros_arguments))
+        super().__init__(make_process(settings, ros_arguments))
         self._schedule = FrameSchedule([camera.rate_hz for camera in self._cameras])
         self._clock = clock
         self._sent_s = [-math.inf] * len(self._cameras)
         self._sent = [-1] * len(self._cameras)
         self._sent_version = 0
         self._missed = [0] * len(self._cameras)
-
-    def start(self, model: mujoco.MjModel | None = None) -> None:
-        """Start the camera process; see `StateFeed.start`.
-
-        Raises:
-            CameraError: see `set_model`, if a model is given.
-        """
-        self._feed.start()
-        if model is not None:
-            self.set_model(model)
-
-    def set_model(self, model: mujoco.MjModel) -> None:
-        """Draw this model from the next state on; see `StateFeed.set_model`.
-
-        Raises:
-            CameraError: the model lacks one of the cameras, or its state is too large to send.
-        """
-        self.prepare(model).show()
 
     def prepare(self, model: mujoco.MjModel) -> PreparedModel:
         """Return a model to draw later; see `StateFeed.prepare`.
@@ -88,7 +70,7 @@ class CameraFeed:
         """
         for camera in self._cameras:
             camera_id(model, camera)
-        return self._feed.prepare(model)
+        return super().prepare(model)
 
     @property
     def schedule(self) -> FrameSchedule:
@@ -102,10 +84,10 @@ class CameraFeed:
         now_s = self._clock()
         due = self._schedule.take_due(time_s)
         frames = tuple(frame for frame in due if self._may_send(frame, now_s))
-        if not (frames and self._feed.send(time_s, frames, data)):
+        if not (frames and self.send(time_s, frames, data)):
             frames = ()
-        if frames and self._sent_version != self._feed.version:
-            self._sent_version = self._feed.version
+        if frames and self._sent_version != self.version:
+            self._sent_version = self.version
             self._sent = [-1] * len(self._cameras)
         for frame in frames:
             self._sent[frame.camera] = frame.serial
@@ -115,7 +97,7 @@ class CameraFeed:
 
     def counts(self) -> tuple[StreamCount, ...]:
         """Return the cameras' figures; those of the camera process are up to half a second old."""
-        progress = self._feed.progress or (CameraProgress(),) * len(self._cameras)
+        progress = self.progress or (CameraProgress(),) * len(self._cameras)
         return tuple(
             StreamCount(camera.name, "camera", camera.rate_hz, due, done.rendered, done.dropped)
             for camera, due, done in zip(
@@ -136,7 +118,7 @@ class CameraFeed:
         """
         found = self._late()
         if found:
-            self._feed.hear(timeout_s)
+            self.hear(timeout_s)
             found = self._late()
         return found
 
@@ -144,18 +126,10 @@ class CameraFeed:
         """Allow the next frame at once, because all earlier ones are published. Loop thread."""
         self._sent_s = [-math.inf] * len(self._cameras)
 
-    def supervise(self) -> None:
-        """Restart the camera process if it has died; see `StateFeed.supervise`."""
-        self._feed.supervise()
-
-    def close(self) -> None:
-        """End the camera process and wait some seconds at most for it. Idempotent; any thread."""
-        self._feed.close()
-
     def _late(self) -> tuple[str, ...]:
-        if self._sent_version != self._feed.version:
+        if self._sent_version != self.version:
             return ()  # A frame of the model before, which the process may never have received.
-        progress = self._feed.progress or (CameraProgress(),) * len(self._cameras)
+        progress = self.progress or (CameraProgress(),) * len(self._cameras)
         return tuple(
             camera.name
             for camera, sent, done in zip(self._cameras, self._sent, progress, strict=True)
@@ -163,7 +137,7 @@ class CameraFeed:
         )
 
     def _may_send(self, frame: FrameDue, now_s: float) -> bool:
-        if not self._feed.flowing or now_s - self._sent_s[frame.camera] < LEAST_INTERVAL_S:
+        if not self.flowing or now_s - self._sent_s[frame.camera] < LEAST_INTERVAL_S:
             return False
         self._sent_s[frame.camera] = now_s
         return True

@@ -91,9 +91,7 @@ class FilmCrew:
         """Return what the cameras see now, RGB, each of shape (height, width, 3)."""
         if self._renderer is None:
             return {}
-        data = self._physics.data
-        state = self._physics.time_s, (), data.qpos, data.mocap_pos, data.mocap_quat
-        self._scene.pose(CameraSnapshot(0, *state))
+        self._scene.pose(CameraSnapshot.of(self._physics.data, self._physics.time_s))
         found: dict[str, Images] = {}
         for name, sensor in self._sensors.items():
             found[name] = np.empty((*self._size, 3), np.uint8)

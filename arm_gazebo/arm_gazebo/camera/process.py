@@ -14,7 +14,7 @@ from typing import Any
 
 from arm_description.package_search import share_folders, suite_package
 from arm_gazebo.errors import CameraError
-from arm_gazebo.feed.child_process import NOT_INHERITED, Spawn, WorkerProcess, describe_exit
+from arm_gazebo.feed.child_process import Spawn, WorkerProcess, describe_exit
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_node.frozen import frozen
 from arm_node.workarounds.local_profile import (
@@ -92,9 +92,8 @@ def camera_environment(
         frame_bytes: size of a frame of all cameras, which with the free space selects the profile.
         shm: folder of the shared memory.
     """
-    own = {name: value for name, value in environ.items() if name not in NOT_INHERITED}
     # Otherwise importing mujoco loads a window toolkit.
-    own["MUJOCO_GL"] = "off"
+    own = {**environ, "MUJOCO_GL": "off"}
     use_general_profile(own)
     profile = _profile(own, frame_bytes, shm)
     if profile is not None:

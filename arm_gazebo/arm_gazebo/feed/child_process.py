@@ -96,7 +96,7 @@ class WorkerProcess:
                 *("--socket", str(socket_fd), "--parent", str(os.getpid())),
                 *arguments,
             ],
-            env=dict(environ),
+            env={name: value for name, value in environ.items() if name not in NOT_INHERITED},
             pass_fds=(socket_fd,),
             stdin=subprocess.DEVNULL,
             # Its own group shields it from Ctrl-C, so that it ends with the simulation.

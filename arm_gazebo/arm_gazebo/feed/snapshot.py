@@ -1,6 +1,7 @@
 """One state of the simulation as the cameras receive it: a small datagram."""
 
 import struct
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,13 @@ class CameraSnapshot:
     qpos: NDArray[np.float64]
     mocap_positions: NDArray[np.float64]
     mocap_quaternions: NDArray[np.float64]
+
+    @classmethod
+    def of(
+        cls, data: Any, time_s: float, version: int = 0, frames: tuple[FrameDue, ...] = ()
+    ) -> "CameraSnapshot":
+        """Return the snapshot of MuJoCo's data, whose arrays it shares."""
+        return cls(version, time_s, frames, data.qpos, data.mocap_pos, data.mocap_quat)
 
     def pack(self) -> bytes:
         """Return the snapshot as bytes."""

@@ -72,19 +72,24 @@ class StateFeed:
         """Whether the process has received the model and so can use states."""
         return self._flowing
 
-    def start(self) -> None:
-        """Start the process. Start it early: it needs no model before `set_model`.
+    def start(self, model: mujoco.MjModel | None = None) -> None:
+        """Start the process, and show a model. Start it early: it needs none before `set_model`.
 
         Call it from the main thread: the process ends when the thread that started it ends.
+
+        Raises:
+            CameraError: see `prepare`, if a model is given.
         """
         with self._lock:
             self._reader.start(self._channel.remote_fd)
+        if model is not None:
+            self.set_model(model)
 
     def set_model(self, model: mujoco.MjModel) -> None:
         """Show this model from the next state on. Call it before the loop starts.
 
         Raises:
-            CameraError: the model's state is too large to send.
+            CameraError: see `prepare`.
         """
         self.prepare(model).show()
 
@@ -120,11 +125,7 @@ class StateFeed:
 
         Never waits. Loop thread only, and only while `flowing`.
         """
-        return self._channel.send_snapshot(
-            CameraSnapshot(
-                self._version, time_s, frames, data.qpos, data.mocap_pos, data.mocap_quat
-            )
-        )
+        return self._channel.send_snapshot(CameraSnapshot.of(data, time_s, self._version, frames))
 
     def supervise(self) -> None:
         """Restart the process if it has died and should run. Call it about once a second.

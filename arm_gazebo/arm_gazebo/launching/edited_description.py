@@ -8,7 +8,7 @@ import numpy as np
 
 from arm_description.transforms import rpy_from_rotation
 from arm_description.urdf.description_source import source_of, with_source
-from arm_description.urdf.element import QUATERNION
+from arm_description.urdf.element import NAMED, QUATERNION
 from arm_description.urdf.parser import ignore_remark, parse_urdf
 from arm_description.urdf.robot import Pose, Robot
 from arm_description.urdf.xml_document import parse_xml
@@ -16,8 +16,6 @@ from arm_gazebo.mjcf.names import free_name
 
 WORLD_LINK = "world"
 """The name of a root link that is the world itself, which all copies share."""
-NAMED = ("link", "joint")
-"""Elements whose attribute `name` is the name of a link or a joint."""
 REFERENCES = ("link", "joint", "reference")
 """Attributes that name a link or a joint."""
 NAMING_TEXTS = (

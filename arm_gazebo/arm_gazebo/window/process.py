@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 import mujoco
 
-from arm_gazebo.feed.child_process import NOT_INHERITED, Spawn, WorkerProcess, describe_exit
-from arm_gazebo.feed.state_feed import PreparedModel, StateFeed
+from arm_gazebo.feed.child_process import Spawn, WorkerProcess, describe_exit
+from arm_gazebo.feed.state_feed import StateFeed
 
 logger = logging.getLogger(__name__)
 
@@ -44,7 +44,8 @@ class WindowProcess:
     def start(self, socket_fd: int) -> None:
         """Start a process that inherits this socket; see `WorkerProcess.start` about the thread."""
         try:
-            self._child.start(socket_fd, (), self._environment())
+            # The window creates its own OpenGL context; MuJoCo's off-screen one would interfere.
+            self._child.start(socket_fd, (), {**self._environ, "MUJOCO_GL": "off"})
         except OSError as error:
             logger.error("the window cannot be started (%s); the simulation continues", error)
 
@@ -69,18 +70,12 @@ class WindowProcess:
         """Wait for the process to end after its socket was closed; terminate it if necessary."""
         self._child.end()
 
-    def _environment(self) -> dict[str, str]:
-        own = {name: value for name, value in self._environ.items() if name not in NOT_INHERITED}
-        # The window creates its own OpenGL context; MuJoCo's off-screen one would interfere.
-        own["MUJOCO_GL"] = "off"
-        return own
-
 
 INTERVAL_S = 1 / 60
 """Wall time between two states; a screen shows no more."""
 
 
-class WindowFeed:
+class WindowFeed(StateFeed):
     """The simulation's side of its window, which is a separate process.
 
     Call `start`, then `publish_due` at each tick and `supervise` about once a second, and finally
@@ -97,36 +92,19 @@ class WindowFeed:
         By default the child runs on the display that the environment names.
         """
         self._process = process or WindowProcess()
-        self._feed = StateFeed(self._process)
+        super().__init__(self._process)
         self._clock = clock
         self._sent_s = -math.inf
-
-    def start(self, model: mujoco.MjModel) -> None:
-        """Open the window on a model; see `StateFeed.start` about the thread.
-
-        Raises:
-            CameraError: the model's state is too large to send.
-        """
-        self._feed.start()
-        self._feed.set_model(model)
-
-    def prepare(self, model: mujoco.MjModel) -> PreparedModel:
-        """Return a model to show later; see `StateFeed.prepare`."""
-        return self._feed.prepare(model)
 
     def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
         """Send the state if the last one is old enough. Loop thread only; never waits."""
         now_s = self._clock()
-        if self._feed.flowing and now_s - self._sent_s >= INTERVAL_S:
+        if self.flowing and now_s - self._sent_s >= INTERVAL_S:
             self._sent_s = now_s
-            self._feed.send(time_s, (), data)
+            self.send(time_s, (), data)
 
     def supervise(self) -> None:
         """Check whether the window still exists; stop sending if it does not."""
-        self._feed.supervise()
+        super().supervise()
         if self._process.pid is None:
-            self._feed.close()
-
-    def close(self) -> None:
-        """Close the window and wait some seconds at most for its end. Idempotent; any thread."""
-        self._feed.close()
+            self.close()

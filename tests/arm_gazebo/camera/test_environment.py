@@ -69,12 +69,6 @@ def test_a_camera_of_a_simulation_that_keeps_to_this_host_does_so_by_its_own_pro
     assert environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
 
 
-def test_the_child_does_not_inherit_the_notify_socket(shared_memory):
-    environment = camera_environment({"NOTIFY_SOCKET": "/run/x", "HOME": "/home/me"}, LARGE)
-    assert "NOTIFY_SOCKET" not in environment
-    assert environment["HOME"] == "/home/me"
-
-
 @pytest.mark.parametrize("name", ["dds_images", "dds_images_small"])
 def test_the_profiles_say_what_makes_discovery_quick(name):
     from lxml import etree

@@ -47,7 +47,7 @@ class World:
         self.process = CameraProcess(
             CameraSettings((CameraSensor("c", "l", "f"),)),
             ros_arguments,
-            environ={},
+            environ={"NOTIFY_SOCKET": "/run/x", "HOME": "/home/me"},
             clock=lambda: self.now_s,
             spawn=self.spawn,
         )
@@ -75,6 +75,12 @@ def test_the_child_inherits_the_socket_and_gets_its_parents_id(world):
     assert child.command[child.command.index("--socket") + 1] == "7"
     assert child.command[child.command.index("--parent") + 1] == str(os.getpid())
     assert "--ros-args" not in child.command
+
+
+def test_the_child_does_not_inherit_the_notify_socket(world):
+    environment = world.children[0].options["env"]
+    assert "NOTIFY_SOCKET" not in environment
+    assert environment["HOME"] == "/home/me"
 
 
 def test_ros_arguments_are_handed_on():
