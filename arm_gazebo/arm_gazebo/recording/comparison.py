@@ -7,7 +7,7 @@ from itertools import zip_longest
 from arm_control.state.encoding import encode
 from arm_gazebo.recording.recorded_run import run_of
 from arm_gazebo.recording.replay import Difference, differing
-from arm_gazebo.recording.run_file import RecordedInput, RunFile, StateBlock
+from arm_gazebo.recording.run_file import RecordedInput, RecordedPeriod, RunFile
 from arm_gazebo.recording.run_state import state_names
 
 
@@ -33,19 +33,6 @@ class Comparison:
         return not self.settings and self.difference is None and not self.longer
 
 
-@dataclass(frozen=True, slots=True)
-class _Period:
-    """A recorded period with the inputs that took effect before it."""
-
-    number: int
-    block: StateBlock
-    inputs: tuple[RecordedInput, ...]
-
-    @property
-    def hash(self) -> int:
-        return int(self.block.hashes[self.number - self.block.first])
-
-
 def compare(first: RunFile, second: RunFile) -> Comparison:
     """Return the first difference of two recordings.
 
@@ -53,11 +40,10 @@ def compare(first: RunFile, second: RunFile) -> Comparison:
         RecordingError: one of them is damaged.
     """
     settings = tuple(_differing_settings(first, second))
-    pairs = zip_longest(_periods(first), _periods(second))
     inputs: list[RecordedInput] = []
     equal = longer = 0
     difference = None
-    for one, other in pairs:
+    for one, other in zip_longest(_periods(first), _periods(second)):
         if one is None or other is None:
             longer += 1 if one is None else -1
             continue
@@ -68,23 +54,12 @@ def compare(first: RunFile, second: RunFile) -> Comparison:
     return Comparison(settings, equal, difference, longer)
 
 
-def _periods(file: RunFile) -> Iterator[_Period]:
-    waiting: list[RecordedInput] = []
-    for record in file.records():
-        match record:
-            case RecordedInput():
-                waiting.append(record)
-            case StateBlock():
-                for number in range(record.first, record.first + len(record.hashes)):
-                    before = tuple(item for item in waiting if item.period <= number)
-                    waiting = [item for item in waiting if item.period > number]
-                    yield _Period(number, record, before)
-            case _:
-                pass
+def _periods(file: RunFile) -> Iterator[RecordedPeriod]:
+    return (each for each in file.periods() if isinstance(each, RecordedPeriod))
 
 
 def _difference(
-    file: RunFile, inputs: list[RecordedInput], one: _Period, other: _Period
+    file: RunFile, inputs: list[RecordedInput], one: RecordedPeriod, other: RecordedPeriod
 ) -> Difference | None:
     lines: list[str] = []
     if encode(one.inputs) != encode(other.inputs):

@@ -1,8 +1,7 @@
 """Run a recorded run again, and compare each state with the recorded one."""
 
 import math
-from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +16,7 @@ from arm_description.errors import DescriptionError
 from arm_gazebo.errors import GazeboError, RecordingError
 from arm_gazebo.model.built_model import SavedModel
 from arm_gazebo.recording.recorded_run import run_of
-from arm_gazebo.recording.run_file import RecordedInput, RecordingEnd, RunFile, StateBlock
+from arm_gazebo.recording.run_file import RecordedInput, RecordedPeriod, RecordingEnd, RunFile
 from arm_gazebo.recording.run_state import Row, StateRow, chained_hashes, state_names
 from arm_gazebo.run.robot import SimulatedRobot
 from arm_gazebo.state.complete_state import CompleteState
@@ -79,7 +78,6 @@ class Replay:
         self.periods = 0
         self._hash = 0
         self._state = StateRow(run.physics, run.managers)
-        self._end: RecordingEnd | None = None
 
     def run(
         self,
@@ -97,18 +95,21 @@ class Replay:
         Raises:
             RecordingError: the recording is damaged.
         """
-        difference = None
-        for block, period in self._periods_with_inputs(until_s, before_input):
-            if isinstance(block, Difference):
-                difference = block
+        difference = end = None
+        for period in self.file.periods():
+            if isinstance(period, RecordingEnd):
+                end = period
+                continue
+            if self.simulation.time_s + 0.5 * self.simulation.timing.period_s >= until_s:
                 break
-            self._run.tick()
-            difference = self._compare(block, period)
+            difference = self._give(period, before_input)
+            if difference is None:
+                self._run.tick()
+                difference = self._compare(period)
             if difference is not None:
                 break
             self.periods += 1
             after_period()
-        end = self._end
         return ReplayResult(
             periods=self.periods,
             time_s=self.simulation.time_s,
@@ -117,47 +118,24 @@ class Replay:
             end_reason="" if end is None else end.reason,
         )
 
-    def _periods_with_inputs(
-        self, until_s: float, before_input: Callable[[RecordedInput], object]
-    ) -> Iterator[tuple[StateBlock | Difference, int]]:
-        """Return each recorded period, its inputs having been given; or what went otherwise."""
-        waiting: deque[RecordedInput] = deque()
-        for record in self.file.records():
-            match record:
-                case RecordedInput():
-                    waiting.append(record)
-                case RecordingEnd():
-                    self._end = record
-                case StateBlock():
-                    for period in range(record.first, record.first + len(record.hashes)):
-                        if (
-                            self.simulation.time_s + 0.5 * self.simulation.timing.period_s
-                            >= until_s
-                        ):
-                            return
-                        while waiting and waiting[0].period <= period:
-                            before_input(waiting[0])
-                            difference = self._give(waiting.popleft())
-                            if difference is not None:
-                                yield difference, period
-                                return
-                        yield record, period
-
-    def _give(self, recorded: RecordedInput) -> Difference | None:
-        """Give an input again; return a difference if it ends in another way."""
-        reason = ""
-        try:
-            self._act(recorded)
-        except (ArmControlError, GazeboError, DescriptionError, ValueError) as error:
-            reason = str(error)
-        if bool(reason) == recorded.raised:
-            return None
-        then = "was refused" if recorded.raised else "was accepted"
-        now = f"is refused: {reason}" if reason else "is accepted"
-        what = " ".join(filter(None, (recorded.controller, recorded.method)))
-        return Difference(
-            recorded.period, self.simulation.time_s, (f"input {what} {then}, but {now}",)
-        )
+    def _give(
+        self, period: RecordedPeriod, before_input: Callable[[RecordedInput], object]
+    ) -> Difference | None:
+        """Give a period's inputs again; return a difference if one ends in another way."""
+        for recorded in period.inputs:
+            before_input(recorded)
+            reason = ""
+            try:
+                self._act(recorded)
+            except (ArmControlError, GazeboError, DescriptionError, ValueError) as error:
+                reason = str(error)
+            if bool(reason) != recorded.raised:
+                then = "was refused" if recorded.raised else "was accepted"
+                now = f"is refused: {reason}" if reason else "is accepted"
+                what = " ".join(filter(None, (recorded.controller, recorded.method)))
+                line = f"input {what} {then}, but {now}"
+                return Difference(recorded.period, self.simulation.time_s, (line,))
+        return None
 
     def _act(self, recorded: RecordedInput) -> None:
         arguments = dict(recorded.arguments)
@@ -198,18 +176,18 @@ class Replay:
             holder.rebind()
         self._state = StateRow(self.simulation, self._run.managers)
 
-    def _compare(self, block: StateBlock, period: int) -> Difference | None:
+    def _compare(self, period: RecordedPeriod) -> Difference | None:
         state = self._state.copy(self.simulation.time_s)
         (self._hash,) = chained_hashes(self._hash, [state])
-        if self._hash == int(block.hashes[period - block.first]):
+        if self._hash == period.hash:
             return None
-        recorded = block.state(period)
+        recorded = period.block.state(period.number)
         if recorded is None:
             lines = ["the hash of the state differs; the state itself was not recorded here"]
         else:
             names = state_names(self.simulation.model, self._run.managers)
             lines = differing(names, recorded, np.frombuffer(state))
-        return Difference(period, self.simulation.time_s, tuple(lines))
+        return Difference(period.number, self.simulation.time_s, tuple(lines))
 
 
 def differing(names: list[str], recorded: Row, now: Row) -> list[str]:

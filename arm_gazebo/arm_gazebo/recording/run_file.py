@@ -9,6 +9,7 @@ import dataclasses
 import json
 import struct
 import zlib
+from collections import deque
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -100,6 +101,20 @@ class RecordingEnd:
 Record = RecordedInput | StateBlock | RecordingEnd
 
 
+@dataclass(frozen=True, slots=True)
+class RecordedPeriod:
+    """A recorded control period with the inputs that took effect before it."""
+
+    number: int
+    block: StateBlock
+    inputs: tuple[RecordedInput, ...]
+
+    @property
+    def hash(self) -> int:
+        """The running hash after the period."""
+        return int(self.block.hashes[self.number - self.block.first])
+
+
 class RunFileWriter:
     """Writes a recording to a new file; not thread-safe. Each `flush` leaves a readable file.
 
@@ -183,6 +198,22 @@ class RunFile:
             for topic, data in _raw_records(stream):
                 if topic != HEADER:
                     yield self._record(topic, data)
+
+    def periods(self) -> Iterator[RecordedPeriod | RecordingEnd]:
+        """Return the control periods in order, and the end if there is one; see `records`."""
+        waiting: deque[RecordedInput] = deque()
+        for record in self.records():
+            match record:
+                case RecordedInput():
+                    waiting.append(record)
+                case RecordingEnd():
+                    yield record
+                case StateBlock():
+                    for number in range(record.first, record.first + len(record.hashes)):
+                        inputs: list[RecordedInput] = []
+                        while waiting and waiting[0].period <= number:
+                            inputs.append(waiting.popleft())
+                        yield RecordedPeriod(number, record, tuple(inputs))
 
     def count_periods(self) -> int:
         """Return the number of recorded control periods; it reads the whole file.
