@@ -3,13 +3,20 @@
 PlanningError            a request that cannot be answered, or a plan that was not found
 ├── SrdfError            an SRDF that cannot be used
 ├── SettingError         a parameter, or a file of a MoveIt configuration, that cannot be used
+├── InvalidRequestError  a request, or a command, that cannot be used
+├── NoPlanError          there is no plan
 ├── InvalidGoalError     a goal or a constraint that cannot be used
 ├── InvalidPlanError     a motion that cannot be planned as it is described
+├── InvalidStateError    a state that the robot cannot be in, or that is not known
+├── InvalidLinkError     a link that does not exist
+├── InvalidObjectError   an object that does not exist, or that cannot be used
+├── ControlError         a motion that no controllers take, or that they gave up
 ├── PerceptionError      a view in which nothing can be found
 └── MissingOmplError     OMPL is not installed
 """
 
 from enum import IntEnum
+from typing import ClassVar
 
 
 class MoveItErrorCode(IntEnum):
@@ -60,39 +67,73 @@ class PlanningError(Exception):
         self.code = code
 
 
-class SrdfError(PlanningError):
+class _CodedError(PlanningError):
+    """An error whose kind has a code of its own."""
+
+    CODE: ClassVar[MoveItErrorCode] = MoveItErrorCode.FAILURE
+
+    def __init__(self, message: str) -> None:
+        super().__init__(self.CODE, message)
+
+
+class SrdfError(_CodedError):
     """An SRDF that cannot be used; the message names the element and its line."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__(MoveItErrorCode.FAILURE, message)
 
-
-class SettingError(PlanningError):
+class SettingError(_CodedError):
     """A parameter, or a file of a MoveIt configuration, that cannot be used."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__(MoveItErrorCode.FAILURE, message)
+
+class InvalidRequestError(_CodedError):
+    """A request, or a command, that cannot be used."""
 
 
-class InvalidGoalError(PlanningError):
+class NoPlanError(_CodedError):
+    """There is no plan."""
+
+    CODE = MoveItErrorCode.PLANNING_FAILED
+
+
+class InvalidGoalError(_CodedError):
     """A goal or a constraint that cannot be used."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__(MoveItErrorCode.INVALID_GOAL_CONSTRAINTS, message)
+    CODE = MoveItErrorCode.INVALID_GOAL_CONSTRAINTS
 
 
-class InvalidPlanError(PlanningError):
+class InvalidPlanError(_CodedError):
     """A motion that cannot be planned as it is described."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__(MoveItErrorCode.INVALID_MOTION_PLAN, message)
+    CODE = MoveItErrorCode.INVALID_MOTION_PLAN
 
 
-class PerceptionError(PlanningError):
+class InvalidStateError(_CodedError):
+    """A state that the robot cannot be in, or that is not known."""
+
+    CODE = MoveItErrorCode.INVALID_ROBOT_STATE
+
+
+class InvalidLinkError(_CodedError):
+    """A link that does not exist."""
+
+    CODE = MoveItErrorCode.INVALID_LINK_NAME
+
+
+class InvalidObjectError(_CodedError):
+    """An object that does not exist, or that cannot be used."""
+
+    CODE = MoveItErrorCode.INVALID_OBJECT_NAME
+
+
+class ControlError(_CodedError):
+    """A motion that no controllers take, or that they gave up."""
+
+    CODE = MoveItErrorCode.CONTROL_FAILED
+
+
+class PerceptionError(_CodedError):
     """A camera's view in which nothing can be found."""
 
-    def __init__(self, message: str) -> None:
-        super().__init__(MoveItErrorCode.UNABLE_TO_AQUIRE_SENSOR_DATA, message)
+    CODE = MoveItErrorCode.UNABLE_TO_AQUIRE_SENSOR_DATA
 
 
 class MissingOmplError(PlanningError):

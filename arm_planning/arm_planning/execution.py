@@ -6,7 +6,7 @@ from enum import Enum
 from itertools import combinations
 
 from arm_node.names import describe_known, listing
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import ControlError
 from arm_planning.setting_values import number, switch
 from arm_planning.trajectory import TimedTrajectory
 
@@ -109,7 +109,9 @@ def controllers_of_settings(settings: Mapping[str, object]) -> list[TrajectoryCo
     """
     names = settings.get("controller_names", ())
     if isinstance(names, str) or not isinstance(names, Sequence):
-        raise _refusal("moveit_simple_controller_manager.controller_names is not a list of names")
+        raise ControlError(
+            "moveit_simple_controller_manager.controller_names is not a list of names"
+        )
     return [_controller(str(name), settings) for name in names]
 
 
@@ -129,7 +131,7 @@ def choose_controllers(
     known = {controller.name: controller for controller in controllers}
     for name in names:
         if name not in known:
-            raise _refusal(f"Controller {name} is not known; {describe_known(name, known)}")
+            raise ControlError(f"Controller {name} is not known; {describe_known(name, known)}")
     usable = [known[name] for name in names] if names else list(controllers)
     wanted = set(joints)
     relevant = [controller for controller in usable if wanted.intersection(controller.joints)]
@@ -137,7 +139,7 @@ def choose_controllers(
         driven = [joint for controller in chosen for joint in controller.joints]
         if wanted <= set(driven) and len(driven) == len(set(driven)):
             return chosen
-    raise _refusal(_nobody_drives(wanted, controllers))
+    raise ControlError(_nobody_drives(wanted, controllers))
 
 
 def part_for(trajectory: TimedTrajectory, controller: TrajectoryController) -> TimedTrajectory:
@@ -184,13 +186,13 @@ def _controller(name: str, settings: Mapping[str, object]) -> TrajectoryControll
     kinds = {kind.value: kind for kind in ControllerKind}
     kind = kinds.get(str(own.get("type", "")))
     if kind is None:
-        raise _refusal(
+        raise ControlError(
             f"controller '{name}' of moveit_simple_controller_manager has the type "
             f"'{own.get('type', '')}'; there are {listing(kinds)}"
         )
     joints = own.get("joints", ())
     if not isinstance(joints, Sequence) or isinstance(joints, str) or not joints:
-        raise _refusal(f"controller '{name}' of moveit_simple_controller_manager has no joints")
+        raise ControlError(f"controller '{name}' of moveit_simple_controller_manager has no joints")
     full = f"moveit_simple_controller_manager.{prefix}"
     return TrajectoryController(
         name,
@@ -207,7 +209,3 @@ def _controller(name: str, settings: Mapping[str, object]) -> TrajectoryControll
 
 def _optional(prefix: str, own: Mapping[str, object], key: str) -> float | None:
     return number(prefix + key, own[key], least=0.0) if key in own else None
-
-
-def _refusal(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.CONTROL_FAILED, sentence)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from arm_description.transforms import wxyz_from_rpy
 from arm_description.urdf.robot import Joint, Robot
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidRequestError
 from arm_planning.robot.model import JointPositions
 
 Array = NDArray[np.float64]
@@ -79,9 +79,8 @@ def kinematic_tree(
         PlanningError: the robot has too many links.
     """
     if len(robot.links) > MAX_LINKS:
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
-            f"robot '{robot.name}' has {len(robot.links)} links; planning takes {MAX_LINKS}",
+        raise InvalidRequestError(
+            f"robot '{robot.name}' has {len(robot.links)} links; planning takes {MAX_LINKS}"
         )
     spec = mujoco.MjSpec()
     root = spec.worldbody.add_body()

@@ -9,7 +9,7 @@ from arm_description.errors import DescriptionError
 from arm_node.environment import SEEING_PACKAGES
 from arm_node.process import NodeProcess
 from arm_node.task import run_task
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import PerceptionError, PlanningError
 from arm_planning.mtc_demo_node import demonstrate, robot_of
 
 if TYPE_CHECKING:
@@ -53,10 +53,9 @@ def look(node: "Node", robot: "TaskRobot", shape: str, dimensions: Sequence[floa
     asked = GetPlanningScene.Request(target_shape=shape, target_dimensions=dimensions)
     seen = robot.call(GetPlanningScene, "/get_planning_scene_mycobot", asked, SERVER)
     if not seen.success:
-        raise PlanningError(
-            MoveItErrorCode.UNABLE_TO_AQUIRE_SENSOR_DATA,
+        raise PerceptionError(
             f"the camera does not see a {shape} of about {list(dimensions)} m; the log of {SERVER} "
-            "says why",
+            "says why"
         )
     target = seen.target_object_id
     node.get_logger().info(f"{target} is seen, on {seen.support_surface_id}")

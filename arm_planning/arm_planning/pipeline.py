@@ -13,7 +13,7 @@ from arm_planning.collision.contact import BodyKind
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.motion_proof import MotionProof, Obstruction
 from arm_planning.constraints.evaluation import ConstraintEvaluator
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidPlanError, MoveItErrorCode, PlanningError
 from arm_planning.planners.problem import NO_DEADLINE, Deadline
 from arm_planning.robot.model import JointGroup, JointPositions
 from arm_planning.scene.scene import PlanningScene
@@ -184,9 +184,7 @@ def timed_and_proved(
         nearby = _corners_near(path, trajectory.positions[where : where + 2])
         open_corners = [index for index in nearby if corners[index] > 0.0]
         if not open_corners:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_MOTION_PLAN, f"the timed motion is not free: {problem}"
-            )
+            raise InvalidPlanError(f"the timed motion is not free: {problem}")
         corners[open_corners] *= TIGHTENING
         corners[corners < SMALLEST_CORNER] = 0.0
 

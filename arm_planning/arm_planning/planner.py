@@ -23,7 +23,13 @@ from arm_planning.constraints.constraints import (
     snap_to_limits,
 )
 from arm_planning.constraints.evaluation import ConstraintEvaluator, ConstraintResult
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import (
+    InvalidGoalError,
+    InvalidPlanError,
+    InvalidRequestError,
+    MoveItErrorCode,
+    PlanningError,
+)
 from arm_planning.kinematics.group_kinematics import GroupKinematics, KinematicsSettings
 from arm_planning.pipeline import (
     SceneChecker,
@@ -384,10 +390,9 @@ class Planner:
             checker = self.checker(replace(scene, positions=dict(positions)), group)
             obstruction = checker.prove_driven(trajectory)
             if obstruction is not None:
-                raise PlanningError(
-                    MoveItErrorCode.INVALID_MOTION_PLAN,
+                raise InvalidPlanError(
                     f"the motion is not free: {obstruction}; Pilz' planners go around nothing, "
-                    "the pipeline 'ompl' does",
+                    "the pipeline 'ompl' does"
                 )
             positions.update(zip(trajectory.joints, trajectory.positions[-1].tolist(), strict=True))
         return found
@@ -442,9 +447,8 @@ class Planner:
         if isinstance(goal, str):
             goal = self.model.state(group.name, goal)
         elif other := [joint for joint in goal if joint not in group.joints]:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_GOAL_CONSTRAINTS,
-                f"group '{group.name}' has no joint '{other[0]}'; it has {listing(group.joints)}",
+            raise InvalidGoalError(
+                f"group '{group.name}' has no joint '{other[0]}'; it has {listing(group.joints)}"
             )
         others = {joint: scene.positions[joint] for joint in group.joints if joint not in goal}
         return joint_goal({**goal, **others})
@@ -484,9 +488,7 @@ class Planner:
             return self.sequence([SequenceItem(request)], scene, interrupted)[0]
         if request.pipeline not in ("", OMPL):
             known = describe_known(request.pipeline, pipelines(), "there are")
-            raise PlanningError(
-                MoveItErrorCode.FAILURE, f"no pipeline '{request.pipeline}'; {known}"
-            )
+            raise InvalidRequestError(f"no pipeline '{request.pipeline}'; {known}")
         checker = self.checker(scene, group.name)
         path = self._evaluator(request.path, group, scene)
         start = group.positions(scene.positions)

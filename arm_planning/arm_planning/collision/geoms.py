@@ -12,7 +12,7 @@ from arm_description.transforms import wxyz_from_rpy
 from arm_description.urdf.robot import Box, Capsule, Cylinder, Link, Mesh, Sphere
 from arm_node.rigid_transform import Quaternion, RigidTransform, Vector
 from arm_planning.collision.mesh_pieces import MeshPieces
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidObjectError, PlanningError
 from arm_planning.scene.objects import CollisionObject
 from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
 
@@ -106,7 +106,7 @@ def _placement(pose: RigidTransform) -> Placement:
     """Return MuJoCo's form of a pose; a quaternion of another length is normalised."""
     length = hypot(*pose.rotation)
     if not (isfinite(length) and all(map(isfinite, pose.position)) and length > 0.0):
-        raise PlanningError(MoveItErrorCode.INVALID_OBJECT_NAME, f"it has no valid pose: {pose}")
+        raise InvalidObjectError(f"it has no valid pose: {pose}")
     x, y, z, w = (part / length for part in pose.rotation)
     return pose.position, (w, x, y, z)
 
@@ -168,9 +168,7 @@ def _plane_pose(a: float, b: float, c: float, d: float) -> RigidTransform:
     """Return the pose of a plane of MuJoCo, whose z axis points out of the half space."""
     length = hypot(a, b, c)
     if not (isfinite(length) and isfinite(d) and length > 0.0):
-        raise PlanningError(
-            MoveItErrorCode.INVALID_OBJECT_NAME, f"a plane has no valid normal: {a:g}, {b:g}, {c:g}"
-        )
+        raise InvalidObjectError(f"a plane has no valid normal: {a:g}, {b:g}, {c:g}")
     quaternion = np.zeros(4)
     mujoco.mju_quatZ2Vec(quaternion, np.array([a, b, c]) / length)
     w, x, y, z = quaternion.tolist()
@@ -189,9 +187,7 @@ def _cone(radius: float, height: float) -> Array:
 def _check_sizes(kind: str, *sizes: float) -> None:
     if not all(isfinite(size) and size > 0.0 for size in sizes):
         given = " x ".join(f"{size:g}" for size in sizes)
-        raise PlanningError(
-            MoveItErrorCode.INVALID_OBJECT_NAME, f"a {kind} of {given} m is not a shape with a size"
-        )
+        raise InvalidObjectError(f"a {kind} of {given} m is not a shape with a size")
 
 
 def _sizes(*sizes: float) -> tuple[float, float, float]:

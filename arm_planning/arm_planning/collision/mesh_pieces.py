@@ -20,7 +20,7 @@ from arm_description.errors import MeshFileError, ResourceNotFoundError
 from arm_description.mesh.file import check_mesh_file, read_mesh_file
 from arm_description.resources import ResourceFinder
 from arm_description.urdf.robot import Mesh
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidObjectError, MoveItErrorCode, PlanningError
 from arm_planning.scene.shapes import TriangleMesh
 
 Array = NDArray[np.float64]
@@ -184,10 +184,9 @@ def convex_pieces(mesh: TriangleMesh) -> Pieces:
         else:
             plates.extend(thickened(corner) for corner in corners[part])
     if len(plates) > MAX_PLATES:
-        raise PlanningError(
-            MoveItErrorCode.INVALID_OBJECT_NAME,
+        raise InvalidObjectError(
             f"the mesh has {len(plates)} triangles in parts that are not convex; at most "
-            f"{MAX_PLATES} are checked; simplify it or cut it into convex parts",
+            f"{MAX_PLATES} are checked; simplify it or cut it into convex parts"
         )
     return (*pieces, *plates)
 
@@ -235,9 +234,8 @@ def convex_hull(points: Array) -> Hull:
     try:
         model = spec.compile()
     except ValueError as error:
-        raise PlanningError(
-            MoveItErrorCode.INVALID_OBJECT_NAME,
-            f"the mesh cannot be used: MuJoCo finds no convex hull of a part: {error}",
+        raise InvalidObjectError(
+            f"the mesh cannot be used: MuJoCo finds no convex hull of a part: {error}"
         ) from error
     # Counts of corners and faces, two arrays of a number per corner, the edges, then the faces.
     count, faces = (int(number) for number in model.mesh_graph[:2])
@@ -366,4 +364,4 @@ def _are_corners(points: Array, normals: Array, triangles: NDArray[np.int64]) ->
 
 
 def _broken(reason: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.INVALID_OBJECT_NAME, f"the mesh cannot be used: {reason}")
+    return InvalidObjectError(f"the mesh cannot be used: {reason}")

@@ -11,7 +11,7 @@ from arm_planning.collision.contact import BodyKind, CollisionContact
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.posed_scene import PosedScene, deepest
 from arm_planning.collision.specification import CollisionBody, CompiledScene, SceneCompiler
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidLinkError
 from arm_planning.robot.model import PlanningModel
 from arm_planning.scene.scene import PlanningScene
 
@@ -141,9 +141,8 @@ class CollisionModel:
             PlanningError: there is no such link, or a position is not finite.
         """
         if link not in self._posed.links:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_LINK_NAME,
-                f"no link '{link}'; {describe_known(link, self._posed.links, 'the robot has')}",
+            raise InvalidLinkError(
+                f"no link '{link}'; {describe_known(link, self._posed.links, 'the robot has')}"
             )
         self._posed.place(q)
         pose = np.eye(4)

@@ -11,7 +11,7 @@ from arm_node.rigid_transform import Vector
 from arm_planning.collision.contact import BodyKind, CollisionContact
 from arm_planning.collision.reach import never_touching
 from arm_planning.collision.specification import SELF, CollisionBody, CompiledScene
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidStateError, PlanningError
 
 Array = NDArray[np.float64]
 
@@ -196,9 +196,7 @@ def deepest(contacts: Iterable[CollisionContact]) -> tuple[CollisionContact, ...
 
 
 def _not_finite(q: object) -> PlanningError:
-    return PlanningError(
-        MoveItErrorCode.INVALID_ROBOT_STATE, f"a state has positions that are not finite: {q}"
-    )
+    return InvalidStateError(f"a state has positions that are not finite: {q}")
 
 
 def _vector(values: Array) -> Vector:

@@ -19,7 +19,7 @@ from arm_planning.collision.contact import BodyKind
 from arm_planning.collision.geoms import CUBE, Geom, link_geoms, object_geoms, object_placement
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.scene_difference import same_robot, same_shapes
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidLinkError, InvalidObjectError, MoveItErrorCode, PlanningError
 from arm_planning.kinematic_tree import PositionMap, kinematic_tree, position_map
 from arm_planning.robot.model import PlanningModel
 from arm_planning.scene.objects import AttachedBody
@@ -324,18 +324,16 @@ class SceneCompiler:
             self._attached.append(part)
             for geom in object_geoms(thing, self._meshes):
                 if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
-                    raise PlanningError(
-                        MoveItErrorCode.INVALID_OBJECT_NAME,
-                        f"object '{thing.id}' has a plane, which cannot be attached to a link",
+                    raise InvalidObjectError(
+                        f"object '{thing.id}' has a plane, which cannot be attached to a link"
                     )
                 self._add_geom(part, geom, WHOLE)
 
     def _link_of(self, attached: AttachedBody) -> _Part:
         if attached.link not in self._links:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_LINK_NAME,
+            raise InvalidLinkError(
                 f"object '{attached.object.id}' is attached to '{attached.link}': "
-                f"no such link; {describe_known(attached.link, self._links, 'the robot has')}",
+                f"no such link; {describe_known(attached.link, self._links, 'the robot has')}"
             )
         return self._links[attached.link]
 

@@ -16,7 +16,13 @@ from numpy.typing import NDArray
 from arm_description.urdf.robot import Robot
 from arm_node.names import listing
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import (
+    InvalidLinkError,
+    InvalidRequestError,
+    InvalidStateError,
+    MoveItErrorCode,
+    PlanningError,
+)
 from arm_planning.kinematics.chain import Chain
 from arm_planning.kinematics.descent import (
     HASTY,
@@ -103,7 +109,7 @@ class InverseKinematics:
         self._moving = np.flatnonzero(self._whole.moving)
         if not len(self._moving):
             message = f"no joint of group '{group}' moves link '{self.tip}'"
-            raise PlanningError(MoveItErrorCode.INVALID_LINK_NAME, message)
+            raise InvalidLinkError(message)
         self._names = tuple(names[index] for index in self._moving)
         self._chain = Chain(model.robot, self.tip, self._names, fixed)
         self._others = {name: fixed.get(name, 0.0) for name in self._whole.others}
@@ -152,19 +158,15 @@ class InverseKinematics:
         q = np.asarray(state, dtype=float)
         names = self.group.joints
         if q.shape != (len(names),):
-            raise PlanningError(
-                MoveItErrorCode.INVALID_ROBOT_STATE,
+            raise InvalidStateError(
                 f"a state of group '{self.group.name}' has {len(names)} positions, for "
-                f"{listing(names)}; the given one has the shape {q.shape}",
+                f"{listing(names)}; the given one has the shape {q.shape}"
             )
         usual = np.abs(q) <= FARTHEST
         if not usual.all():
             index = int(usual.argmin())
             why = f"is beyond {FARTHEST:g}" if np.isfinite(q[index]) else "is not finite"
-            raise PlanningError(
-                MoveItErrorCode.INVALID_ROBOT_STATE,
-                f"the position of joint '{names[index]}' {why}: {q[index]:g}",
-            )
+            raise InvalidStateError(f"the position of joint '{names[index]}' {why}: {q[index]:g}")
         return q
 
     def pose(self, q: Sequence[float] | Array) -> Array:
@@ -394,25 +396,21 @@ class InverseKinematics:
 
 def _checked_tip(model: PlanningModel, group: JointGroup, tip: str) -> str:
     if not (name := tip or group.tip):
-        raise PlanningError(
-            MoveItErrorCode.INVALID_LINK_NAME,
+        raise InvalidLinkError(
             f"group '{group.name}' is not a chain: name the link to place; it has "
-            f"{listing(group.links)}",
+            f"{listing(group.links)}"
         )
     links = [link.name for link in model.robot.links]
     if name not in links:
-        raise PlanningError(
-            MoveItErrorCode.INVALID_LINK_NAME, f"no link '{name}'; the robot has {listing(links)}"
-        )
+        raise InvalidLinkError(f"no link '{name}'; the robot has {listing(links)}")
     return name
 
 
 def _urdf_limits(robot: Robot, name: str) -> PlanningLimits:
     joint = robot.joint(name)
     if not joint.type.is_scalar:
-        raise PlanningError(
-            MoveItErrorCode.INVALID_ROBOT_STATE,
-            f"joint '{name}' is {joint.type}: its position is not a single number",
+        raise InvalidStateError(
+            f"joint '{name}' is {joint.type}: its position is not a single number"
         )
     limit = joint.limit
     if limit is None:
@@ -422,7 +420,7 @@ def _urdf_limits(robot: Robot, name: str) -> PlanningLimits:
 
 def _checked_timeout(timeout_s: float) -> float:
     if math.isnan(timeout_s):
-        raise PlanningError(MoveItErrorCode.FAILURE, "the timeout is not a number")
+        raise InvalidRequestError("the timeout is not a number")
     return min(timeout_s, MAX_TIMEOUT_S) if timeout_s > 0.0 else TIMEOUT_S
 
 

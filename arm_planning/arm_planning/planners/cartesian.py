@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidRequestError, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.kinematics.pose_target import checked_pose
 from arm_planning.kinematics.search import Orientation
@@ -137,15 +137,12 @@ def _lines(
 def _counts(lines: list[PoseLine], max_step_m: float) -> list[int]:
     """Return the number of steps of each line."""
     if not max_step_m > 0.0 or math.isinf(max_step_m):
-        raise PlanningError(
-            MoveItErrorCode.FAILURE, f"max_step is {max_step_m:g} m; it must be positive"
-        )
+        raise InvalidRequestError(f"max_step is {max_step_m:g} m; it must be positive")
     shares = [max(line.length_m, line.angle_rad / RAD_PER_M) / max_step_m for line in lines]
     if sum(shares) > MAX_POINTS:
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
+        raise InvalidRequestError(
             f"steps of {max_step_m:g} m make {sum(shares):.0f} points of this path; "
-            f"{MAX_POINTS} are possible",
+            f"{MAX_POINTS} are possible"
         )
     return [math.floor(share) + 1 for share in shares]
 

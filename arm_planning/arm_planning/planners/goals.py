@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from arm_planning.constraints.constraints import MotionConstraints
 from arm_planning.constraints.evaluation import ConstraintEvaluator, LinkPose
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidGoalError, MoveItErrorCode, PlanningError
 from arm_planning.kinematics.group_kinematics import GroupKinematics
 from arm_planning.planners.goal_poses import poses_of
 from arm_planning.planners.problem import NO_DEADLINE, Deadline, StateChecker
@@ -109,10 +109,8 @@ class GoalSampler:
     def _alternatives(self) -> list[MotionConstraints]:
         goals = [goal for goal in self.goals if goal]
         if not goals:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_GOAL_CONSTRAINTS,
-                "the request has no goal: it needs constraints on joints, positions or "
-                "orientations",
+            raise InvalidGoalError(
+                "the request has no goal: it needs constraints on joints, positions or orientations"
             )
         return goals
 

@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping
 
 from arm_node.names import describe_known
-from arm_planning.errors import MoveItErrorCode, PlanningError, SettingError
+from arm_planning.errors import NoPlanError, SettingError
 from arm_planning.planners.problem import PathPlanner
 from arm_planning.planners.search import RrtConnectPlanner
 
@@ -105,10 +105,7 @@ def _known(planner_id: str) -> str:
     if name == DEFAULT or name in names:
         return name
     hint = "" if names else "; more come with OMPL: pip install 'arm-suite[ompl]'"
-    raise PlanningError(
-        MoveItErrorCode.PLANNING_FAILED,
-        f"no planner '{planner_id}'; {describe_known(name, planner_ids())}{hint}",
-    )
+    raise NoPlanError(f"no planner '{planner_id}'; {describe_known(name, planner_ids())}{hint}")
 
 
 def _ompl_names() -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, NoPlanError, PlanningError
 from arm_planning.planners.mend import mend
 from arm_planning.planners.problem import PlanningProblem, path_length
 from arm_planning.planners.rrt_connect import REACH, rrt_connect
@@ -49,9 +49,8 @@ class RrtConnectPlanner:
             is_proved = number == SAMPLED_ROUNDS
             paths = paths or list(self._paths(problem, goals, number, is_proved=is_proved))
         if not paths:
-            raise PlanningError(
-                MoveItErrorCode.PLANNING_FAILED,
-                "a path was found but not proved free; another seed may find a better one",
+            raise NoPlanError(
+                "a path was found but not proved free; another seed may find a better one"
             )
         return min(paths, key=path_length)
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from arm_description.urdf.robot import Robot
 from arm_node.names import listing
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidStateError, MoveItErrorCode, PlanningError
 
 Array = NDArray[np.float64]
 JointPositions = Mapping[str, float]
@@ -117,8 +117,7 @@ class PlanningModel:
         known = {state: each for (owner, state), each in self.states.items() if owner == group}
         if name not in known:
             owner = self.group(group).name
-            raise PlanningError(
-                MoveItErrorCode.INVALID_ROBOT_STATE,
-                f"group '{owner}' has no state '{name}'; it has {listing(known)}",
+            raise InvalidStateError(
+                f"group '{owner}' has no state '{name}'; it has {listing(known)}"
             )
         return known[name]

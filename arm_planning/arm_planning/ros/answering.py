@@ -10,7 +10,7 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 
 from arm_node.qos import SERVICE_QOS
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidRequestError, MoveItErrorCode, PlanningError
 from arm_planning.ros.convert import error_code
 
 HOLDERS = ("motion_plan_response", "response")
@@ -32,9 +32,8 @@ class BusyLimit:
     def turn(self, name: str) -> Iterator[None]:
         """Serve a request, or refuse it with a PlanningError while too many others are served."""
         if not self._free.acquire(blocking=False):
-            raise PlanningError(
-                MoveItErrorCode.FAILURE,
-                f"{name}: {self.most} other requests are being served; ask again later",
+            raise InvalidRequestError(
+                f"{name}: {self.most} other requests are being served; ask again later"
             )
         try:
             yield

@@ -8,7 +8,7 @@ from controller_manager_msgs.srv import ListControllers
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import ControlError, PlanningError
 from arm_planning.execution import ControllerKind, TrajectoryController
 
 TIMEOUT_S = 2.0
@@ -67,7 +67,7 @@ class ControllerList:
 
 def _silence(reason: str) -> PlanningError:
     message = f"nobody says which controllers can move the robot: {reason}"
-    return PlanningError(MoveItErrorCode.CONTROL_FAILED, message)
+    return ControlError(message)
 
 
 def _controller(listed: Any) -> TrajectoryController | None:

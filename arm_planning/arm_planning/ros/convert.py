@@ -13,7 +13,12 @@ from trajectory_msgs.msg import JointTrajectoryPoint
 
 from arm_node.names import describe_known, listing
 from arm_node.rigid_transform import RigidTransform, Vector
-from arm_planning.errors import InvalidPlanError, MoveItErrorCode, PlanningError
+from arm_planning.errors import (
+    InvalidPlanError,
+    InvalidRequestError,
+    InvalidStateError,
+    MoveItErrorCode,
+)
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.scene.object_checks import LARGEST_M, UNIT
 from arm_planning.trajectory import TimedTrajectory
@@ -39,14 +44,9 @@ def vector_of(message: Point | Vector3, what: str) -> Vector:
     """
     vector = (message.x, message.y, message.z)
     if not all(map(math.isfinite, vector)):
-        raise PlanningError(
-            MoveItErrorCode.FAILURE, f"{what} is not finite: {listing(map(str, vector))}"
-        )
+        raise InvalidRequestError(f"{what} is not finite: {listing(map(str, vector))}")
     if max(map(abs, vector)) > LARGEST_M:
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
-            f"{what} is beyond {LARGEST_M:g} m: {listing(map(str, vector))}",
-        )
+        raise InvalidRequestError(f"{what} is beyond {LARGEST_M:g} m: {listing(map(str, vector))}")
     return vector
 
 
@@ -75,10 +75,9 @@ def quaternion_of(message: Quaternion, what: str) -> tuple[float, float, float, 
     numbers = (message.x, message.y, message.z, message.w)
     norm = math.hypot(*numbers)
     if not abs(norm - 1.0) <= UNIT:
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
+        raise InvalidRequestError(
             f"the orientation of {what} is no unit quaternion: its norm is {norm:.4g}; no rotation "
-            "is (0, 0, 0, 1)",
+            "is (0, 0, 0, 1)"
         )
     x, y, z, w = (number / norm for number in numbers)
     return (x, y, z, w)
@@ -136,9 +135,7 @@ def joint_positions(model: PlanningModel, message: RobotState, warn: Warn) -> di
             unknown = describe_known(name, known, "the robot has")
             warn(f"a state names the joint '{name}', which the robot does not have; {unknown}")
         elif not abs(value) <= FARTHEST:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_ROBOT_STATE, f"the position of joint '{name}' is {value}"
-            )
+            raise InvalidStateError(f"the position of joint '{name}' is {value}")
         elif name in model.joints:
             result[name] = value
     return result

@@ -19,7 +19,7 @@ from arm_planning.constraints.constraints import (
     OrientationError,
     PositionConstraint,
 )
-from arm_planning.errors import InvalidGoalError, MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidGoalError, InvalidLinkError, PlanningError
 from arm_planning.request import PlanRequest
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import Warn, quaternion_of, vector_of
@@ -64,7 +64,7 @@ class ConstraintFrames:
                 return body.link, body.object.pose.then(body.object.subframes[subframe])
         links = [link.name for link in self.model.robot.links]
         known = describe_known(name, [*links, *self.scene.attached], "the robot has")
-        raise PlanningError(MoveItErrorCode.INVALID_LINK_NAME, f"no link '{name}'; {known}")
+        raise InvalidLinkError(f"no link '{name}'; {known}")
 
     def reference(self, name: str) -> tuple[str, RigidTransform]:
         """Return the link that a frame moves with ("": the planning frame) and its pose there.

@@ -26,7 +26,7 @@ from shape_msgs.msg import Mesh, Plane, SolidPrimitive
 
 from arm_node.names import listing
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidObjectError, InvalidRequestError
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import (
     Warn,
@@ -40,7 +40,6 @@ from arm_planning.ros.convert_shapes import placed_shapes, solid_message
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.attached_changes import AttachedChange
 from arm_planning.scene.object_changes import ObjectChange, Operation, explicit_pose
-from arm_planning.scene.object_checks import refusal
 from arm_planning.scene.objects import AttachedBody, CollisionObject
 from arm_planning.scene.occupancy_map import OccupancyMap
 from arm_planning.scene.octree import decoded, encoded, refused
@@ -109,13 +108,15 @@ def object_change_of(message: ObjectMessage) -> ObjectChange:
     owner = f"object '{message.id}'"
     operation = OPERATIONS.get(message.operation)
     if operation is None:
-        raise refusal(
+        raise InvalidObjectError(
             f"{owner} has the operation {message.operation!r}; there are ADD, REMOVE, APPEND and "
             "MOVE"
         )
     names, poses = list(message.subframe_names), list(message.subframe_poses)
     if len(names) != len(poses):
-        raise refusal(f"{owner} has {len(names)} names and {len(poses)} poses of subframes")
+        raise InvalidObjectError(
+            f"{owner} has {len(names)} names and {len(poses)} poses of subframes"
+        )
     moves = operation is Operation.MOVE
     every = (message.primitive_poses, message.mesh_poses, message.plane_poses)
     return ObjectChange(
@@ -168,16 +169,14 @@ def _allowed(message: AllowedCollisionMatrix) -> AllowedCollisions | None:
         return None
     rows = [list(row.enabled) for row in message.entry_values]
     if len(rows) != len(names) or any(len(row) != len(names) for row in rows):
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
+        raise InvalidRequestError(
             f"the allowed collision matrix has {len(names)} names ({listing(names)}) but its "
-            "rows are not as many and as long",
+            "rows are not as many and as long"
         )
     if len(defaults[0]) != len(defaults[1]):
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
+        raise InvalidRequestError(
             f"the allowed collision matrix has {len(defaults[0])} names and {len(defaults[1])} "
-            "values of defaults",
+            "values of defaults"
         )
     pairs = {
         (min(row, column), max(row, column)): rows[i][j]

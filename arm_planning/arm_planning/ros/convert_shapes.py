@@ -9,8 +9,9 @@ from shape_msgs.msg import Plane as PlaneMessage
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
+from arm_planning.errors import InvalidObjectError
 from arm_planning.ros.convert import pose_of
-from arm_planning.scene.object_checks import refusal, shape_problem
+from arm_planning.scene.object_checks import shape_problem
 from arm_planning.scene.objects import PlacedShape
 from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
 
@@ -77,24 +78,24 @@ def _placed(
     what = f"a {kind} of {owner}"
     for shape in shapes:
         if problem := shape_problem(shape):
-            raise refusal(f"{owner} has a {problem}")
+            raise InvalidObjectError(f"{owner} has a {problem}")
     placed = [pose_of(pose, what) for pose in poses]
     if len(placed) > len(shapes):
-        raise refusal(f"{owner} has {len(placed)} {kind} poses for {len(shapes)} shapes")
+        raise InvalidObjectError(f"{owner} has {len(placed)} {kind} poses for {len(shapes)} shapes")
     placed += [RigidTransform()] * (len(shapes) - len(placed))
     return [PlacedShape(shape, pose) for shape, pose in zip(shapes, placed, strict=True)]
 
 
 def _solid(owner: str, message: SolidPrimitive) -> Shape:
     if message.type not in SIZES:
-        raise refusal(
+        raise InvalidObjectError(
             f"{owner} has a primitive of type {message.type}; there are 1 (box), 2 (sphere), "
             "3 (cylinder) and 4 (cone)"
         )
     name, wanted = SIZES[message.type]
     sizes = list(message.dimensions)
     if len(sizes) != len(wanted):
-        raise refusal(
+        raise InvalidObjectError(
             f"{owner} has a {name} of {len(sizes)} dimensions; it has {', '.join(wanted)}"
         )
     match message.type:

@@ -10,7 +10,7 @@ from moveit_msgs.srv import GetPlannerParams, SetPlannerParams
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidRequestError, PlanningError
 from arm_planning.planner import OMPL, planner_of
 from arm_planning.planners.registry import checked_parameter, planner_name, planner_parameters
 from arm_planning.request import PlanRequest
@@ -74,9 +74,7 @@ class PlannerParameterServices:
         try:
             planner = self._planner(request)
             if len(keys) != len(values):
-                raise PlanningError(
-                    MoveItErrorCode.FAILURE, f"there are {len(keys)} keys and {len(values)} values"
-                )
+                raise InvalidRequestError(f"there are {len(keys)} keys and {len(values)} values")
             given = dict(zip(keys, values, strict=True))
             self._parameters.change(planner, request.group, given, replaces=request.replace)
         except PlanningError as error:
@@ -86,10 +84,8 @@ class PlannerParameterServices:
     def _planner(self, request: Any) -> str:
         """Return the id of the planner without the group that RViz puts around it."""
         if request.pipeline_id not in ("", OMPL):
-            raise PlanningError(
-                MoveItErrorCode.FAILURE,
-                f"the pipeline '{request.pipeline_id}' has no planner with parameters; "
-                f"'{OMPL}' has",
+            raise InvalidRequestError(
+                f"the pipeline '{request.pipeline_id}' has no planner with parameters; '{OMPL}' has"
             )
         if request.group:
             self._model.group(request.group)

@@ -22,7 +22,7 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
 from arm_planning.collision.contact import CollisionContact
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidLinkError, MoveItErrorCode, PlanningError
 from arm_planning.pipeline import Timing
 from arm_planning.planner import Planner, TimedCartesianPath, pipelines
 from arm_planning.planners.cartesian import JumpLimits
@@ -170,9 +170,8 @@ class StateServices:
             stamped = request.pose_stamped_vector[0]
             link = request.ik_link_names[0] if request.ik_link_names else link
         elif request.pose_stamped_vector:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_LINK_NAME,
-                f"{len(request.pose_stamped_vector)} poses at once; one link has one pose",
+            raise InvalidLinkError(
+                f"{len(request.pose_stamped_vector)} poses at once; one link has one pose"
             )
         origin = frames.placed(*frames.reference(stamped.header.frame_id))
         return planner.inverse(
@@ -188,9 +187,7 @@ class StateServices:
     def _forward(self, request: Any, answer: GetPositionFK.Response) -> GetPositionFK.Response:
         session = self._session
         if not request.fk_link_names:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_LINK_NAME, "compute_fk names no links in fk_link_names"
-            )
+            raise InvalidLinkError("compute_fk names no links in fk_link_names")
         frames = session.frames(session.state(request.robot_state))
         base = frames.placed(*frames.reference(request.header.frame_id))
         answer.error_code = error_code(MoveItErrorCode.SUCCESS)

@@ -13,7 +13,7 @@ from moveit_msgs.srv import GetMotionSequence
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidRequestError, MoveItErrorCode, PlanningError
 from arm_planning.pipeline import start_state
 from arm_planning.planner import PILZ
 from arm_planning.planners.pilz.sequence import SequenceItem
@@ -134,10 +134,9 @@ class SequenceSession:
         groups: set[str] = set()
         for number, item in enumerate(items):
             if item.req.pipeline_id not in ("", PILZ):
-                raise PlanningError(
-                    MoveItErrorCode.FAILURE,
+                raise InvalidRequestError(
                     f"motion {number} of the sequence is for the pipeline "
-                    f"'{item.req.pipeline_id}'; a sequence is planned by '{PILZ}'",
+                    f"'{item.req.pipeline_id}'; a sequence is planned by '{PILZ}'"
                 )
             request = self.session.request(item.req, scene)
             if is_given(item.req.start_state) and item.req.group_name in groups:

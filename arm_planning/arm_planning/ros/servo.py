@@ -23,7 +23,7 @@ from arm_node.names import describe_known
 from arm_node.parameter_values import Reader, Value, read_parameter
 from arm_node.parameters import declare_typed, type_of
 from arm_node.setting import read_settings, settings_of
-from arm_planning.errors import PlanningError
+from arm_planning.errors import InvalidRequestError, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.ros.answering import offer_service
 from arm_planning.ros.convert import NANOSECONDS, pose_of, seconds, vector_of
@@ -39,7 +39,6 @@ from arm_planning.servo.commands import (
     JointSpeeds,
     TipTarget,
     TipTwist,
-    refused,
 )
 from arm_planning.servo.jog import Jog
 from arm_planning.servo.settings import ServoSettings
@@ -124,9 +123,9 @@ class JogServer:
         def read() -> JogCommand:
             joints = self._jog.group.joints
             if not message.joint_names:
-                raise refused("the joint jog names no joint")
+                raise InvalidRequestError("the joint jog names no joint")
             if message.displacements:
-                raise refused("displacements are not used: give velocities")
+                raise InvalidRequestError("displacements are not used: give velocities")
             return JointSpeeds.of(list(message.joint_names), list(message.velocities), joints)
 
         self._take(CommandType.JOINT_JOG, message.header, read)
@@ -164,27 +163,27 @@ class JogServer:
         self, kind: CommandType, stamp_s: float, read: Callable[[], JogCommand]
     ) -> _Stamped:
         if self._type is None:
-            raise refused("no command type is chosen yet: call ~/switch_command_type")
+            raise InvalidRequestError("no command type is chosen yet: call ~/switch_command_type")
         if kind is not self._type:
-            raise refused(
+            raise InvalidRequestError(
                 f"a command of type {kind.name} came, but {self._type.name} is chosen: call "
                 "~/switch_command_type"
             )
         age_s = self._now_s() - stamp_s
         if age_s >= self._settings.timeout_s:
-            raise refused(
+            raise InvalidRequestError(
                 f"the command's stamp is {age_s:.2f} s old, more than incoming_command_timeout: "
                 f"{self._settings.timeout_s:g} s"
             )
         if age_s < -self._settings.timeout_s:
-            raise refused(
+            raise InvalidRequestError(
                 f"the command's stamp is {-age_s:.2f} s ahead of the robot's time: does its sender "
                 "use simulation time?"
             )
         if self._output.problem:
-            raise refused(self._output.problem)
+            raise InvalidRequestError(self._output.problem)
         if missing := self._states.missing():
-            raise refused(f"/joint_states has no position of {', '.join(missing)}")
+            raise InvalidRequestError(f"/joint_states has no position of {', '.join(missing)}")
         return _Stamped(read(), stamp_s)
 
     def _switch(
@@ -264,11 +263,11 @@ class JogServer:
         group = self._jog.group
         age_s = now_s - self._states.stamp_s
         if age_s > STATES_STOPPED_S:
-            raise refused(f"joint_states stopped {age_s:.1f} s ago")
+            raise InvalidRequestError(f"joint_states stopped {age_s:.1f} s ago")
         if self._jog.is_moving:
             behind = np.abs(self._jog.positions - group.positions(positions))
             if behind.max() > FARTHEST_BEHIND:
-                raise refused(
+                raise InvalidRequestError(
                     f"joint {group.joints[int(behind.argmax())]} does not follow: it is "
                     f"{behind.max():.2f} behind its command"
                 )

@@ -19,7 +19,7 @@ from arm_description.urdf.parser import parse_urdf
 from arm_node.process import NodeProcess
 from arm_node.qos import LATCHED
 from arm_planning.configuration import PLANNING, move_group_parameters
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import ControlError, InvalidObjectError, MoveItErrorCode, PlanningError
 from arm_planning.planner import Planner
 from arm_planning.planners.pilz.cartesian_limits import cartesian_limits
 from arm_planning.robot.build import planning_model
@@ -174,15 +174,14 @@ class TaskRobot:
     def _change(self, message: SceneMessage) -> None:
         request = ApplyPlanningScene.Request(scene=message)
         if not self._answer(self._apply.call_async, request).success:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_OBJECT_NAME,
-                "move_group did not take the change of the scene; its log says why",
+            raise InvalidObjectError(
+                "move_group did not take the change of the scene; its log says why"
             )
 
     def _run(self, goal: ExecuteTrajectory.Goal) -> None:
         handle = self._answer(self._execute.send_goal_async, goal)
         if not handle.accepted:
-            raise PlanningError(MoveItErrorCode.CONTROL_FAILED, "move_group did not take the goal")
+            raise ControlError("move_group did not take the goal")
         try:
             code = self._answer(handle.get_result_async).result.error_code
         except PlanningError:

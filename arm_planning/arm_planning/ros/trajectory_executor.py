@@ -14,7 +14,7 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
 from arm_node.names import listing
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import ControlError, MoveItErrorCode, PlanningError
 from arm_planning.execution import (
     ControllerKind,
     ExecutionSettings,
@@ -152,14 +152,14 @@ class ExecutionManager:
         if tolerance <= 0.0:
             return
         if problem := self._states.wait_for_fresh(STATE_TIMEOUT_S, interrupted):
-            raise _failure(f"Failed to validate trajectory: {problem}")
+            raise ControlError(f"Failed to validate trajectory: {problem}")
         present = self._states.positions()
         follow = ControllerKind.FOLLOW_JOINT_TRAJECTORY
         checked = {joint for each in chosen if each.kind is follow for joint in each.joints}
         for joint, wanted in zip(trajectory.joints, trajectory.positions[0].tolist(), strict=True):
             distance = abs(wanted - present.get(joint, wanted))
             if joint in checked and distance > tolerance:
-                raise _failure(
+                raise ControlError(
                     "Invalid Trajectory: start point deviates from current robot state more than "
                     f"{tolerance:g} at joint '{joint}': it is at {present[joint]:.4f}, the "
                     f"trajectory starts at {wanted:.4f}; plan again from where the robot is"
@@ -176,7 +176,7 @@ class ExecutionManager:
             )
         client = self._clients[key]
         if not client.wait_for_server(SERVER_TIMEOUT_S):
-            raise _failure(
+            raise ControlError(
                 f"Action client not connected to action server: {controller.action_name}; is the "
                 "controller active? `arm control list_controllers` tells"
             )
@@ -429,7 +429,3 @@ def _goal_message(part: TimedTrajectory, controller: TrajectoryController) -> An
     if controller.max_effort:
         goal.command.effort = [controller.max_effort]
     return goal
-
-
-def _failure(sentence: str) -> PlanningError:
-    return PlanningError(MoveItErrorCode.CONTROL_FAILED, sentence)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from arm_node.names import describe_known
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidLinkError, InvalidObjectError
 from arm_planning.scene.frames import LinkPoses
 from arm_planning.scene.object_changes import (
     ObjectChange,
@@ -13,7 +13,6 @@ from arm_planning.scene.object_changes import (
     joined,
     placed_object,
 )
-from arm_planning.scene.object_checks import refusal
 from arm_planning.scene.objects import AttachedBody, CollisionObject
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.shapes import Plane
@@ -53,7 +52,7 @@ def change_attached(
         case Operation.REMOVE:
             return _detached(scene, links, change)
         case Operation.MOVE:
-            raise refusal(
+            raise InvalidObjectError(
                 f"object '{change.object.id}' is attached and cannot be moved; attach it again at "
                 "its new pose"
             )
@@ -70,7 +69,7 @@ def _attached(scene: PlanningScene, links: LinkPoses, change: AttachedChange) ->
         before = replace(known.object, pose=links[known.link].then(known.object.pose))
         body, touching = joined(before, body), touching | known.touch_links
     if any(isinstance(placed.shape, Plane) for placed in body.shapes):
-        raise refusal(f"object '{name}' has a plane, which cannot be attached to a link")
+        raise InvalidObjectError(f"object '{name}' has a plane, which cannot be attached to a link")
     pose = links[change.link].inverse().then(body.pose)
     if change.object.shapes and change.object.frame == change.link and known is None:
         # Clients send scenes back: what is given in the link's own frame stays so to the bit.
@@ -86,7 +85,7 @@ def _source(scene: PlanningScene, links: LinkPoses, change: AttachedChange) -> C
     if asked.shapes:
         return placed_object(scene, links, asked)
     if name not in scene.objects:
-        raise refusal(
+        raise InvalidObjectError(
             f"Attempting to attach object '{name}' to link '{change.link}' but no geometry "
             f"specified and such an object does not exist in the collision world; "
             f"{describe_known(name, scene.objects, 'the world has')}"
@@ -102,10 +101,10 @@ def _detached(scene: PlanningScene, links: LinkPoses, change: AttachedChange) ->
         _check_link(link, links)
     if name and name not in scene.attached:
         known = describe_known(name, scene.attached, "the robot holds")
-        raise refusal(f"object '{name}' is not attached; {known}")
+        raise InvalidObjectError(f"object '{name}' is not attached; {known}")
     if name and link not in ("", scene.attached[name].link):
         where = scene.attached[name].link
-        raise refusal(f"object '{name}' is attached to link '{where}', not to '{link}'")
+        raise InvalidObjectError(f"object '{name}' is attached to link '{where}', not to '{link}'")
     leaving = {
         key: body
         for key, body in scene.attached.items()
@@ -122,4 +121,4 @@ def _detached(scene: PlanningScene, links: LinkPoses, change: AttachedChange) ->
 def _check_link(link: str, links: LinkPoses) -> None:
     if link not in links.links:
         known = describe_known(link, links.links, "the robot has")
-        raise PlanningError(MoveItErrorCode.INVALID_LINK_NAME, f"no link '{link}'; {known}")
+        raise InvalidLinkError(f"no link '{link}'; {known}")

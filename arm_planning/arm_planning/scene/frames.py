@@ -7,7 +7,7 @@ from arm_description.transforms import quaternion_from_rpy
 from arm_description.urdf.robot import Joint
 from arm_node.names import describe_known, listing
 from arm_node.rigid_transform import Quaternion, RigidTransform
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidLinkError, MoveItErrorCode, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.scene.objects import CollisionObject
 from arm_planning.scene.scene import PlanningScene
@@ -57,10 +57,7 @@ class LinkPoses:
             PlanningError: INVALID_LINK_NAME: there is no such link.
         """
         if link not in self:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_LINK_NAME,
-                f"no link '{link}'; the robot has {listing(self.links)}",
-            )
+            raise InvalidLinkError(f"no link '{link}'; the robot has {listing(self.links)}")
         return self[link]
 
     def _motion(self, joint: Joint) -> RigidTransform:

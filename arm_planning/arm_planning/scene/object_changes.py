@@ -6,10 +6,10 @@ from enum import IntEnum
 
 from arm_node.names import describe_known
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import PlanningError
+from arm_planning.errors import InvalidObjectError, PlanningError
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.frames import LinkPoses, frame_pose
-from arm_planning.scene.object_checks import check_pose, check_shapes, refusal
+from arm_planning.scene.object_checks import check_pose, check_shapes
 from arm_planning.scene.objects import CollisionObject, PlacedShape
 from arm_planning.scene.occupancy_map import OCTOMAP
 from arm_planning.scene.scene import PlanningScene
@@ -87,7 +87,7 @@ def placed_object(scene: PlanningScene, links: LinkPoses, change: ObjectChange) 
     owner = f"object '{change.id}'"
     _check_name(links, change.id)
     if not change.shapes:
-        raise refusal(f"{owner} has no shapes; give it a primitive, a mesh or a plane")
+        raise InvalidObjectError(f"{owner} has no shapes; give it a primitive, a mesh or a plane")
     check_poses(change)
     check_shapes(change.shapes, owner)
     inside = in_frame(change)
@@ -130,17 +130,19 @@ def in_frame(change: ObjectChange) -> CollisionObject:
 def _check_name(links: LinkPoses, name: str) -> None:
     """Refuse names that would mean two things in frames and in the matrix of allowed pairs."""
     if not name:
-        raise refusal("an object has no name; give it an id")
+        raise InvalidObjectError("an object has no name; give it an id")
     if name == OCTOMAP:
-        raise refusal(f"the name '{OCTOMAP}' is kept for the octomap; give the object another id")
+        raise InvalidObjectError(
+            f"the name '{OCTOMAP}' is kept for the octomap; give the object another id"
+        )
     if name in links:
-        raise refusal(f"the robot has a link '{name}'; give the object another id")
+        raise InvalidObjectError(f"the robot has a link '{name}'; give the object another id")
 
 
 def _check_free(scene: PlanningScene, name: str) -> None:
     if name in scene.attached:
         link = scene.attached[name].link
-        raise refusal(
+        raise InvalidObjectError(
             f"object '{name}' is attached to link '{link}'; detach it first, or give the new one "
             "another id"
         )
@@ -168,7 +170,7 @@ def _moved(scene: PlanningScene, links: LinkPoses, change: ObjectChange) -> Plan
     shapes = known.shapes
     if change.shape_poses:
         if len(change.shape_poses) != len(shapes):
-            raise refusal(
+            raise InvalidObjectError(
                 f"object '{change.id}' has {len(shapes)} shapes, but {len(change.shape_poses)} "
                 "poses are given for them"
             )
@@ -203,7 +205,7 @@ def _missing(scene: PlanningScene, name: str, verb: str) -> PlanningError:
     hint = describe_known(name, scene.objects, "the world has")
     if name in scene.attached:
         hint = f"it is attached to link '{scene.attached[name].link}', detach it first"
-    return refusal(f"World object '{name}' does not exist. Cannot {verb}; {hint}")
+    return InvalidObjectError(f"World object '{name}' does not exist. Cannot {verb}; {hint}")
 
 
 def _with(scene: PlanningScene, each: CollisionObject) -> PlanningScene:

@@ -7,7 +7,7 @@ import numpy as np
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidObjectError
 from arm_planning.scene.objects import PlacedShape
 from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
 
@@ -27,12 +27,14 @@ def check_pose(pose: RigidTransform, what: str) -> None:
             one; `what` names the pose.
     """
     if not all(map(math.isfinite, pose.position)):
-        raise refusal(f"the position of {what} is not finite: {_listed(pose.position)}")
+        raise InvalidObjectError(f"the position of {what} is not finite: {_listed(pose.position)}")
     if max(map(abs, pose.position)) > LARGEST_M:
-        raise refusal(f"the position of {what} is beyond {LARGEST_M:g} m: {_listed(pose.position)}")
+        raise InvalidObjectError(
+            f"the position of {what} is beyond {LARGEST_M:g} m: {_listed(pose.position)}"
+        )
     norm = math.hypot(*pose.rotation)
     if not abs(norm - 1.0) <= UNIT:
-        raise refusal(
+        raise InvalidObjectError(
             f"the orientation of {what} is no unit quaternion: its norm is {norm:.4g}; no rotation "
             "is (0, 0, 0, 1)"
         )
@@ -47,7 +49,7 @@ def check_shapes(shapes: Sequence[PlacedShape], owner: str) -> None:
     for placed in shapes:
         problem = shape_problem(placed.shape)
         if problem:
-            raise refusal(f"{owner} has a {problem}")
+            raise InvalidObjectError(f"{owner} has a {problem}")
         check_pose(placed.pose, f"a shape of {owner}")
 
 
@@ -66,11 +68,6 @@ def shape_problem(shape: Shape) -> str:
             return _plane_problem((a, b, c), d)
         case TriangleMesh():
             return _mesh_problem(shape)
-
-
-def refusal(sentence: str) -> PlanningError:
-    """Return the error for an object that cannot be used."""
-    return PlanningError(MoveItErrorCode.INVALID_OBJECT_NAME, sentence)
 
 
 def _size_problem(name: str, sizes: Sequence[float]) -> str:

@@ -14,7 +14,7 @@ from math import isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidObjectError, PlanningError
 
 Cells = NDArray[np.int64]
 
@@ -85,7 +85,7 @@ def decoded(data: bytes, *, binary: bool) -> Cubes:
 def refused(reason: str) -> PlanningError:
     """Return the error of an octomap that cannot be used."""
     sentence = f"the octomap cannot be used: {reason}"
-    return PlanningError(MoveItErrorCode.INVALID_OBJECT_NAME, sentence)
+    return InvalidObjectError(sentence)
 
 
 def _of_words(data: bytes) -> tuple[list[Node], int]:

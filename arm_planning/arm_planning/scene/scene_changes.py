@@ -203,12 +203,8 @@ class _Parts:
                 sentence = f"the {what} of link '{link}' is {value}; it is {bound}"
                 self._refuse(MoveItErrorCode.INVALID_LINK_NAME, sentence)
             else:
-                before = self.scene.padding if what == "padding" else self.scene.scale
-                after = {**before, link: float(value)}
-                if what == "padding":
-                    self.scene = replace(self.scene, padding=after)
-                else:
-                    self.scene = replace(self.scene, scale=after)
+                after = {**getattr(self.scene, what), link: float(value)}
+                self.scene = replace(self.scene, **{what: after})
 
     def _refuse(self, code: MoveItErrorCode, sentence: str) -> None:
         self.problems.append(PlanningError(code, sentence))

@@ -14,10 +14,9 @@ import numpy as np
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import PlanningError
+from arm_planning.errors import InvalidObjectError, PlanningError
 from arm_planning.scene.frames import LinkPoses
 from arm_planning.scene.object_changes import ObjectChange, Operation, change_object, explicit_pose
-from arm_planning.scene.object_checks import refusal
 from arm_planning.scene.objects import CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene, Rgba
 from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
@@ -64,7 +63,9 @@ def with_scene_file(
 
 def _object_lines(each: CollisionObject, color: Rgba) -> Iterator[str]:
     if each.id != each.id.strip() or "\n" in each.id:
-        raise refusal(f"a .scene file cannot hold the name {each.id!r}; rename the object")
+        raise InvalidObjectError(
+            f"a .scene file cannot hold the name {each.id!r}; rename the object"
+        )
     yield f"{OBJECT} {each.id}"
     yield from _pose_lines(each.pose)
     yield str(len(each.shapes))
@@ -75,7 +76,7 @@ def _object_lines(each: CollisionObject, color: Rgba) -> Iterator[str]:
     yield str(len(each.subframes))
     for name, pose in each.subframes.items():
         if name.split() != [name]:
-            raise refusal(
+            raise InvalidObjectError(
                 f"a .scene file cannot hold the name {name!r} of a subframe of object '{each.id}', "
                 "which has blanks; rename it"
             )
@@ -135,7 +136,7 @@ class _Words:
     def word(self, wanted: str) -> str:
         while self._line == 0 or self._word >= len(self._lines[self._line - 1]):
             if self._line >= len(self._lines):
-                raise refusal(f"the file ends where {wanted} should be")
+                raise InvalidObjectError(f"the file ends where {wanted} should be")
             self._line, self._word = self._line + 1, 0
         self._word += 1
         return self._lines[self._line - 1][self._word - 1]
@@ -152,7 +153,7 @@ class _Words:
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise refusal(f"'{word}' is not {wanted}")
+            raise InvalidObjectError(f"'{word}' is not {wanted}")
         return value
 
     def numbers(self, count: int, wanted: str) -> list[float]:
@@ -162,7 +163,7 @@ class _Words:
         """Return a number of things that the file can still hold."""
         word = self.word(wanted)
         if not (word.isascii() and word.isdigit()) or len(word) > 9:
-            raise refusal(f"'{word}' is not {wanted}")
+            raise InvalidObjectError(f"'{word}' is not {wanted}")
         return int(word)
 
     def pose(self) -> RigidTransform:
@@ -178,7 +179,9 @@ def _with_objects(scene: PlanningScene, links: LinkPoses, words: _Words) -> Plan
         if marker == END:
             return scene
         if marker != OBJECT:
-            raise refusal(f"'{marker}' is neither '{OBJECT}', which starts an object, nor '{END}'")
+            raise InvalidObjectError(
+                f"'{marker}' is neither '{OBJECT}', which starts an object, nor '{END}'"
+            )
         name = words.line()
         if has_poses is None:
             has_poses = words.next_line_has_several()
@@ -233,4 +236,4 @@ def _shape(words: _Words) -> Shape:
                 np.array(indices, dtype=np.int64).reshape(-1, 3),
             )
         case _:
-            raise refusal(f"'{kind}' is not a shape; there are {', '.join(KINDS)}")
+            raise InvalidObjectError(f"'{kind}' is not a shape; there are {', '.join(KINDS)}")

@@ -7,7 +7,7 @@ from enum import IntEnum
 
 from arm_node.names import describe_known
 from arm_node.rigid_transform import RigidTransform, Vector
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidRequestError
 
 
 class CommandType(IntEnum):
@@ -34,14 +34,16 @@ class JointSpeeds:
             PlanningError: a joint is not in the group, comes twice or has no finite speed.
         """
         if len(names) != len(velocities):
-            raise refused(f"{len(names)} joint names have {len(velocities)} velocities")
+            raise InvalidRequestError(f"{len(names)} joint names have {len(velocities)} velocities")
         for name, speed in zip(names, velocities, strict=True):
             if name not in joints:
-                raise refused(f"no joint '{name}'; {describe_known(name, joints, 'the group has')}")
+                raise InvalidRequestError(
+                    f"no joint '{name}'; {describe_known(name, joints, 'the group has')}"
+                )
             if not math.isfinite(speed):
-                raise refused(f"the velocity of '{name}' is {speed}")
+                raise InvalidRequestError(f"the velocity of '{name}' is {speed}")
         if len(set(names)) < len(names):
-            raise refused("a joint is named twice")
+            raise InvalidRequestError("a joint is named twice")
         return cls(dict(zip(names, velocities, strict=True)))
 
 
@@ -61,7 +63,7 @@ class TipTwist:
 
     def __post_init__(self) -> None:
         if not all(map(math.isfinite, (*self.linear, *self.angular))):
-            raise refused(f"the twist is not finite: {(*self.linear, *self.angular)}")
+            raise InvalidRequestError(f"the twist is not finite: {(*self.linear, *self.angular)}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +75,3 @@ class TipTarget:
 
 
 JogCommand = JointSpeeds | TipTwist | TipTarget
-
-
-def refused(sentence: str) -> PlanningError:
-    """Return the error of a command that cannot be used."""
-    return PlanningError(MoveItErrorCode.FAILURE, sentence)

@@ -11,12 +11,13 @@ from arm_node.rigid_transform import RigidTransform, rotated
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.model import CollisionModel
 from arm_planning.collision.proximity import Proximity
+from arm_planning.errors import InvalidRequestError
 from arm_planning.kinematics.chain import Chain
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.scene.frames import LinkPoses, frame_pose
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.servo.collision_slowdown import CollisionSlowdown
-from arm_planning.servo.commands import JogCommand, JointSpeeds, TipTarget, TipTwist, refused
+from arm_planning.servo.commands import JogCommand, JointSpeeds, TipTarget, TipTwist
 from arm_planning.servo.joint_bounds import JointBounds
 from arm_planning.servo.settings import UNITLESS, ServoSettings
 from arm_planning.servo.status import JogStatus, Slowdown, StatusCode, slowest
@@ -161,7 +162,7 @@ class Jog:
     ) -> tuple[Array, Slowdown]:
         chain, tip = self._chain, self._tip
         if chain is None or tip is None:
-            raise refused(
+            raise InvalidRequestError(
                 f"group '{self.group.name}' is not a chain, so its tip cannot be moved; its joints "
                 "can"
             )

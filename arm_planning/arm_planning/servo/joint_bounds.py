@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_planning.errors import InvalidRequestError
 from arm_planning.robot.model import JointGroup
-from arm_planning.servo.commands import refused
 from arm_planning.servo.status import JogStatus, Slowdown, StatusCode
 
 Array = NDArray[np.float64]
@@ -39,7 +39,7 @@ class JointBounds:
         self, group: JointGroup, margins: Sequence[float], velocity_factor: float = 1.0
     ) -> None:
         if len(margins) not in (1, len(group.joints)):
-            raise refused(
+            raise InvalidRequestError(
                 f"joint_limit_margins has {len(margins)} numbers; it has one for all joints, or "
                 f"one for each of the {len(group.joints)}"
             )

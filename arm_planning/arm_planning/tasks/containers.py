@@ -3,9 +3,10 @@
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+from arm_planning.errors import NoPlanError
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.tasks.solution import Solution
-from arm_planning.tasks.stage import OutOfTimeError, StageInterface, TaskSearch, TaskStage, refusal
+from arm_planning.tasks.stage import OutOfTimeError, StageInterface, TaskSearch, TaskStage
 
 GENERATOR, PROPAGATOR, CONNECTOR = (
     StageInterface.GENERATOR,
@@ -30,7 +31,7 @@ class Container(TaskStage):
         super().__init__(name)
         self._stages = tuple(stages)
         if not self._stages:
-            raise refusal(f"container '{name}' has no stage")
+            raise NoPlanError(f"container '{name}' has no stage")
 
     @property
     def children(self) -> tuple[TaskStage, ...]:
@@ -63,12 +64,12 @@ class SerialContainer(Container):
             if first is second:
                 what = "generate" if first is GENERATOR else "connect"
                 need = "a connector" if first is GENERATOR else "a generator"
-                raise refusal(
+                raise NoPlanError(
                     f"container '{self.name}': two stages in a row {what}; {need} belongs between"
                 )
         if CONNECTOR in (marks[:1] + marks[-1:]) and len(kinds) > 1:
             name = self.children[kinds.index(CONNECTOR)].name
-            raise refusal(
+            raise NoPlanError(
                 f"container '{self.name}': stage '{name}' connects; a generator belongs before "
                 "and after it"
             )
@@ -146,7 +147,7 @@ class ParallelContainer(Container):
         super().__init__(name, stages)
         for stage in self.children:
             if stage.interface is not self.interface:
-                raise refusal(
+                raise NoPlanError(
                     f"container '{name}': stage '{self.children[0].name}' needs "
                     f"{self.interface.value}, stage '{stage.name}' {stage.interface.value}"
                 )

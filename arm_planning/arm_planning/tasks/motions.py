@@ -7,14 +7,14 @@ from math import cos, sin
 import numpy as np
 
 from arm_node.rigid_transform import RigidTransform, Vector, rotated
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import NoPlanError
 from arm_planning.planner import Planner
 from arm_planning.scene.frames import LinkPoses, frame_pose
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.tasks.costs import Cost, duration
 from arm_planning.tasks.solution import Solution, moved, moved_back
 from arm_planning.tasks.solvers import CartesianPathSolver, Goal, PipelinePlanner, Solver
-from arm_planning.tasks.stage import SingleStage, StageInterface, TaskSearch, refusal
+from arm_planning.tasks.stage import SingleStage, StageInterface, TaskSearch
 from arm_planning.trajectory import TimedTrajectory
 
 SAME_POSITION, SAME_PLACE_M = 1e-4, 1e-4
@@ -44,11 +44,6 @@ class MoveTo(SingleStage):
     ) -> None:
         super().__init__(name, cost)
         self._group, self._goal, self._solver = group, goal, solver
-
-    @property
-    def interface(self) -> StageInterface:
-        """It propagates."""
-        return StageInterface.PROPAGATOR
 
     def _solutions(
         self, search: TaskSearch, start: PlanningScene | None, end: PlanningScene | None
@@ -114,11 +109,6 @@ class MoveRelative(SingleStage):
         self._group, self._by, self._link = group, by, link
         self._min_m, self._solver = min_distance_m, solver
 
-    @property
-    def interface(self) -> StageInterface:
-        """It propagates."""
-        return StageInterface.PROPAGATOR
-
     def _solutions(
         self, search: TaskSearch, start: PlanningScene | None, end: PlanningScene | None
     ) -> Iterator[Solution]:
@@ -136,7 +126,7 @@ class MoveRelative(SingleStage):
         joints = search.planner.model.group(self._group).joints
         unknown = next((joint for joint in by if joint not in joints), None)
         if unknown is not None:
-            raise refusal(f"group '{self._group}' has no joint '{unknown}'")
+            raise NoPlanError(f"group '{self._group}' has no joint '{unknown}'")
         goal = {joint: scene.positions[joint] + sign * by.get(joint, 0.0) for joint in joints}
         return PipelinePlanner(timing=self._solver.timing).plan(search, self._group, scene, goal)
 
@@ -165,7 +155,7 @@ class MoveRelative(SingleStage):
         needed = 1.0 if self._min_m is None else min(self._min_m / length, 1.0) if length else 0.0
         if found.fraction < needed or len(found.trajectory.positions) < 2:
             least = "" if self._min_m is None else f"; it is to come {self._min_m * 1e3:g} mm far"
-            raise refusal(f"{found.stopped}{least}")
+            raise NoPlanError(f"{found.stopped}{least}")
         return found.trajectory
 
 
@@ -179,16 +169,13 @@ class Connect(SingleStage):
         cost: see `SingleStage`.
     """
 
+    INTERFACE = StageInterface.CONNECTOR
+
     def __init__(
         self, name: str, group: str, solver: Solver = DEFAULT_SOLVER, cost: Cost = duration
     ) -> None:
         super().__init__(name, cost)
         self._group, self._solver = group, solver
-
-    @property
-    def interface(self) -> StageInterface:
-        """It connects."""
-        return StageInterface.CONNECTOR
 
     def _solutions(
         self, search: TaskSearch, start: PlanningScene | None, end: PlanningScene | None
@@ -197,7 +184,7 @@ class Connect(SingleStage):
         assert end is not None
         group = search.planner.model.group(self._group)
         if difference := _difference(start, end, group.joints):
-            raise PlanningError(MoveItErrorCode.PLANNING_FAILED, difference)
+            raise NoPlanError(difference)
         goal = {joint: end.positions[joint] for joint in group.joints}
         found = self._solver.plan(search, self._group, start, goal)
         yield self.priced(moved(self.name, start, found), search)

@@ -7,23 +7,20 @@ from math import cos, pi, sin
 import numpy as np
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, NoPlanError, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.scene.frames import LinkPoses, frame_pose
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.tasks.costs import Cost, duration
 from arm_planning.tasks.solution import Solution
-from arm_planning.tasks.stage import SingleStage, StageInterface, TaskSearch, TaskStage, refusal
+from arm_planning.tasks.stage import SingleStage, StageInterface, TaskSearch, TaskStage
 
 
 class Generator(SingleStage):
     """A stage that needs no scene; those that are given to it do not matter."""
 
-    @property
-    def interface(self) -> StageInterface:
-        """It generates."""
-        return StageInterface.GENERATOR
+    INTERFACE = StageInterface.GENERATOR
 
 
 class CurrentState(Generator):
@@ -41,7 +38,7 @@ class CurrentState(Generator):
         known = search.planner.scene
         unknown = next((joint for joint in self._positions if joint not in known.positions), None)
         if unknown is not None:
-            raise refusal(f"the robot has no joint '{unknown}'")
+            raise NoPlanError(f"the robot has no joint '{unknown}'")
         scene = replace(known, positions={**known.positions, **self._positions})
         touching = search.planner.contacts(scene=scene)
         if touching:
@@ -71,7 +68,7 @@ class MonitoringGenerator(Generator):
         """
         if self._monitors not in search.found:
             known = ", ".join(search.found) or "none"
-            raise refusal(
+            raise NoPlanError(
                 f"it monitors the stage '{self._monitors}', which does not come before it; {known} "
                 "does"
             )
@@ -127,7 +124,7 @@ class GenerateGraspPose(MonitoringGenerator):
         scene = self.monitored(search)
         if self._object not in scene.objects:
             known = ", ".join(scene.objects) or "none"
-            raise refusal(f"no object '{self._object}' is in the world; there is {known}")
+            raise NoPlanError(f"no object '{self._object}' is in the world; there is {known}")
         pose = scene.objects[self._object].pose
         for height_m in self._heights_m:
             for target in _turned(pose.then(RigidTransform((0.0, 0.0, height_m))), self._delta):
@@ -162,7 +159,7 @@ class GeneratePlacePose(MonitoringGenerator):
     ) -> Iterator[Solution]:
         scene = self.monitored(search)
         if self._object not in scene.attached:
-            raise refusal(f"the robot does not hold the object '{self._object}'")
+            raise NoPlanError(f"the robot does not hold the object '{self._object}'")
         for target in _turned(self._place, self._delta):
             yield Solution(self.name, scene, scene, target=target)
 
@@ -206,7 +203,7 @@ class ComputeIK(Generator):
     ) -> Iterator[Solution]:
         for posed in self._poses.solve(search, None, None):
             if posed.target is None:
-                raise refusal(f"stage '{self._poses.name}' generates no poses")
+                raise NoPlanError(f"stage '{self._poses.name}' generates no poses")
             try:
                 found = self._solved(search, posed.end, posed.target)
             except PlanningError as error:
@@ -263,7 +260,7 @@ def _pair(contact: object) -> str:
 
 def _turned(pose: RigidTransform, delta: float) -> Iterator[RigidTransform]:
     if not 0.0 < delta <= 2.0 * pi:
-        raise refusal(f"angle_delta is {delta:g} rad; it is positive, and a whole turn at most")
+        raise NoPlanError(f"angle_delta is {delta:g} rad; it is positive, and a whole turn at most")
     for index in range(int(2.0 * pi / delta + 1e-9)):
         half = index * delta / 2.0
         yield pose.then(RigidTransform(rotation=(0.0, 0.0, sin(half), cos(half))))

@@ -8,7 +8,7 @@ from arm_planning.scene.frames import LinkPoses
 from arm_planning.scene.object_changes import ObjectChange, Operation
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.tasks.solution import Solution
-from arm_planning.tasks.stage import SingleStage, StageInterface, TaskSearch
+from arm_planning.tasks.stage import SingleStage, TaskSearch
 
 
 class ModifyPlanningScene(SingleStage):
@@ -36,11 +36,6 @@ class ModifyPlanningScene(SingleStage):
         super().__init__(name)
         self._attach, self._detach, self._link = tuple(attach), tuple(detach), link
         self._allow, self._forbid = tuple(allow), tuple(forbid)
-
-    @property
-    def interface(self) -> StageInterface:
-        """It propagates."""
-        return StageInterface.PROPAGATOR
 
     def _solutions(
         self, search: TaskSearch, start: PlanningScene | None, end: PlanningScene | None

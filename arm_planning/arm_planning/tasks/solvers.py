@@ -6,7 +6,7 @@ from typing import Protocol
 
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.constraints.constraints import JointConstraint, MotionConstraints, pose_goal
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import NoPlanError, PlanningError
 from arm_planning.pipeline import Timing
 from arm_planning.planner import FULL_SPEED, Planner
 from arm_planning.request import PlanRequest
@@ -98,15 +98,14 @@ class CartesianPathSolver:
             group, [goal], max_step_m=self.step_m, timing=self.timing, scene=scene
         )
         if found.stopped:
-            raise PlanningError(MoveItErrorCode.PLANNING_FAILED, found.stopped)
+            raise NoPlanError(found.stopped)
         ends = zip(found.trajectory.joints, found.trajectory.positions[-1].tolist(), strict=True)
         off = {joint: q for joint, q in ends if abs(wanted.get(joint, q) - q) > SAME_POSITION}
         if off:
             joint, q = next(iter(off.items()))
-            raise PlanningError(
-                MoveItErrorCode.PLANNING_FAILED,
+            raise NoPlanError(
                 f"the straight path ends in another posture: joint '{joint}' at {q:.3f} instead "
-                f"of {wanted[joint]:.3f}",
+                f"of {wanted[joint]:.3f}"
             )
         return found.trajectory
 

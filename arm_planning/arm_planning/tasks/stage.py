@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import PlanningError
 from arm_planning.planner import Planner
 from arm_planning.planners.problem import NO_DEADLINE, Deadline
 from arm_planning.scene.scene import PlanningScene
@@ -122,11 +122,21 @@ class SingleStage(TaskStage):
     Args:
         name: see `TaskStage`.
         cost: of its solutions; by default how long they take.
+
+    Attributes:
+        INTERFACE: what stages of its class need to be given; by default one scene.
     """
+
+    INTERFACE = StageInterface.PROPAGATOR
 
     def __init__(self, name: str, cost: Cost = duration) -> None:
         super().__init__(name)
         self.cost = cost
+
+    @property
+    def interface(self) -> StageInterface:
+        """That of its class."""
+        return self.INTERFACE
 
     def priced(self, solution: Solution, search: TaskSearch) -> Solution:
         """Return a solution with its cost.
@@ -135,8 +145,3 @@ class SingleStage(TaskStage):
             PlanningError: the cost refuses it.
         """
         return replace(solution, cost=self.cost(solution, search.planner))
-
-
-def refusal(sentence: str) -> PlanningError:
-    """Return the error of a task that is put together wrongly, or cannot go on."""
-    return PlanningError(MoveItErrorCode.PLANNING_FAILED, sentence)

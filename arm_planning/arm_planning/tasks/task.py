@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Iterator
 
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, NoPlanError, PlanningError
 from arm_planning.planner import Planner
 from arm_planning.planners.problem import Deadline, never
 from arm_planning.tasks.containers import SerialContainer
 from arm_planning.tasks.solution import Solution
-from arm_planning.tasks.stage import OutOfTimeError, StageInterface, TaskSearch, TaskStage, refusal
+from arm_planning.tasks.stage import OutOfTimeError, StageInterface, TaskSearch, TaskStage
 
 REASONS = 3
 """Reasons of a stage that a report tells, the most frequent first."""
@@ -42,7 +42,7 @@ class StagedTask(SerialContainer):
                 most frequent reason.
         """
         if self.interface is not StageInterface.GENERATOR:
-            raise refusal(f"task '{self.name}' has no stage that begins, such as CurrentState")
+            raise NoPlanError(f"task '{self.name}' has no stage that begins, such as CurrentState")
         self.reset()
         search = TaskSearch(planner, seed, Deadline.after(allowed_time_s, interrupted))
         found: list[Solution] = []

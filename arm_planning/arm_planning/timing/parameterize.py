@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from arm_planning.errors import InvalidPlanError, MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidPlanError, InvalidRequestError
 from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing import stepped_motion
 from arm_planning.timing.driven_spline import limit_violation
@@ -91,7 +91,7 @@ def parameterize(
     trajectory = _timed(points, tolerances, joints, bounds, resample_dt)
     fault = limit_violation(trajectory, bounds.limits(), with_jerk=limit_jerk)
     if fault:
-        raise PlanningError(MoveItErrorCode.FAILURE, f"the timing broke a limit: {fault}")
+        raise InvalidRequestError(f"the timing broke a limit: {fault}")
     return trajectory
 
 
@@ -131,19 +131,17 @@ def _tolerances(max_deviation: ArrayLike | None, path_tolerance: float, count: i
     if max_deviation is not None:
         tolerances = np.minimum(tolerances, np.asarray(max_deviation, dtype=np.float64))
     if not (tolerances >= 0.0).all():
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
-            f"the path tolerance is {tolerances.min():g}; it must not be negative",
+        raise InvalidRequestError(
+            f"the path tolerance is {tolerances.min():g}; it must not be negative"
         )
     return tolerances
 
 
 def _require_step(resample_dt: float) -> None:
     if not stepped_motion.SMALLEST_STEP_S <= resample_dt < np.inf:
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
+        raise InvalidRequestError(
             f"resample_dt is {resample_dt:g} s; it must be at least "
-            f"{stepped_motion.SMALLEST_STEP_S:g} s",
+            f"{stepped_motion.SMALLEST_STEP_S:g} s"
         )
 
 
@@ -199,15 +197,13 @@ def _bounds(
 
 def _require(limit: float, name: str, joint: str) -> None:
     if limit == np.inf:
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
+        raise InvalidRequestError(
             f"No {name} limit was defined for joint {joint}! "
-            f"Set has_{name}_limits and max_{name} in joint_limits.yaml",
+            f"Set has_{name}_limits and max_{name} in joint_limits.yaml"
         )
     if not limit > 0.0:
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
-            f"Invalid max_{name} {limit:g} specified for joint {joint}; it must be greater than 0",
+        raise InvalidRequestError(
+            f"Invalid max_{name} {limit:g} specified for joint {joint}; it must be greater than 0"
         )
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidRequestError
 from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing.driven_spline import ROUNDING, DrivenSpline, bernstein
 from arm_planning.trajectory import TimedTrajectory
@@ -79,10 +79,9 @@ def step_for(
     step = min(duration_s / runs / 400.0, LARGEST_STEP_S, math.sqrt(6.0 * closeness / acceleration))
     step = min(max(step, SMALLEST_STEP_S), resample_dt)
     if not duration_s <= MAX_STEPS * step:
-        raise PlanningError(
-            MoveItErrorCode.FAILURE,
+        raise InvalidRequestError(
             f"the motion would take {duration_s:.3g} s, but at most {MAX_STEPS * step:.3g} s can "
-            "be timed; raise the limits or the scaling factors, or split the path",
+            "be timed; raise the limits or the scaling factors, or split the path"
         )
     return step
 

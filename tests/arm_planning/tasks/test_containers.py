@@ -4,11 +4,11 @@ from itertools import count
 
 import pytest
 
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import MoveItErrorCode, NoPlanError, PlanningError
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.tasks.containers import Alternatives, Fallbacks, SerialContainer
 from arm_planning.tasks.solution import Solution
-from arm_planning.tasks.stage import StageInterface, TaskStage, refusal
+from arm_planning.tasks.stage import StageInterface, TaskStage
 from arm_planning.tasks.task import StagedTask
 
 STEP = 1.0
@@ -47,7 +47,7 @@ class Stepped(TaskStage):
             return
         q = start.positions["q"] + STEP
         if q > self.limit:
-            raise refusal(f"{q:g} is above {self.limit:g}")
+            raise NoPlanError(f"{q:g} is above {self.limit:g}")
         yield Solution(self.name, start, scene(q), self.cost)
 
 

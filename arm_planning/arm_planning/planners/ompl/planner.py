@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.errors import MissingOmplError, MoveItErrorCode, PlanningError
+from arm_planning.errors import MissingOmplError, NoPlanError, PlanningError
 from arm_planning.planners.problem import PlanningProblem, StateChecker, path_length
 from arm_planning.planners.search import (
     check_start,
@@ -86,9 +86,8 @@ class OmplPlanner:
             PlanningError: also if the problem has path constraints.
         """
         if problem.path is not None and problem.path.constraints:
-            raise PlanningError(
-                MoveItErrorCode.PLANNING_FAILED,
-                f"OMPL's {self.name} takes no path constraints; the planner RRTConnect does",
+            raise NoPlanError(
+                f"OMPL's {self.name} takes no path constraints; the planner RRTConnect does"
             )
         check_start(problem)
         path, goals = straight_to_any(problem)
@@ -106,10 +105,7 @@ class OmplPlanner:
         )
         proved = [path for path in paths if path is not None]
         if not proved:
-            raise PlanningError(
-                MoveItErrorCode.PLANNING_FAILED,
-                f"OMPL's {self.name} found no path that is proved free",
-            )
+            raise NoPlanError(f"OMPL's {self.name} found no path that is proved free")
         return min(proved, key=path_length)
 
     def _search(self, problem: PlanningProblem, goals: Array, seed: int) -> Array:
@@ -140,9 +136,7 @@ class OmplPlanner:
         setup.solve(ompl.base.PlannerTerminationCondition(guard.ends))
         guard.raise_error()
         if not setup.haveExactSolutionPath():
-            raise PlanningError(
-                MoveItErrorCode.PLANNING_FAILED, f"OMPL's {self.name} found no path to the goal"
-            )
+            raise NoPlanError(f"OMPL's {self.name} found no path to the goal")
         solution = setup.getSolutionPath()
         states: list[State] = [
             solution.getState(index) for index in range(solution.getStateCount())

@@ -12,7 +12,11 @@ from arm_planning.constraints.constraints import (
     OrientationConstraint,
     PositionConstraint,
 )
-from arm_planning.errors import InvalidGoalError, InvalidPlanError, MoveItErrorCode, PlanningError
+from arm_planning.errors import (
+    InvalidGoalError,
+    InvalidPlanError,
+    InvalidStateError,
+)
 from arm_planning.kinematics.pose_target import checked_pose
 from arm_planning.request import PlanRequest
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
@@ -122,16 +126,13 @@ def _checked_transform(pose: RigidTransform) -> RigidTransform:
 def _checked_start(group: JointGroup, state: JointPositions) -> Array:
     missing = [joint for joint in group.joints if joint not in state]
     if missing:
-        raise PlanningError(
-            MoveItErrorCode.INVALID_ROBOT_STATE, f"the start state lacks joints {listing(missing)}"
-        )
+        raise InvalidStateError(f"the start state lacks joints {listing(missing)}")
     start = group.positions(state)
     outside = ~((start >= group.lower - _OUTSIDE) & (start <= group.upper + _OUTSIDE))
     if outside.any():
         names = [joint for joint, is_out in zip(group.joints, outside, strict=True) if is_out]
-        raise PlanningError(
-            MoveItErrorCode.INVALID_ROBOT_STATE,
-            f"start state joints outside their position limits: {listing(names)}",
+        raise InvalidStateError(
+            f"start state joints outside their position limits: {listing(names)}"
         )
     return start
 

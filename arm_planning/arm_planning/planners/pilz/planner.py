@@ -12,7 +12,14 @@ from numpy.typing import NDArray
 
 from arm_node.names import listing
 from arm_node.rigid_transform import Vector
-from arm_planning.errors import InvalidGoalError, InvalidPlanError, MoveItErrorCode, PlanningError
+from arm_planning.errors import (
+    InvalidGoalError,
+    InvalidLinkError,
+    InvalidPlanError,
+    MoveItErrorCode,
+    NoPlanError,
+    PlanningError,
+)
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.planners.pilz.arc import PoseArc, arc_about, arc_through
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
@@ -59,10 +66,9 @@ class PilzPlanner:
         """
         name = request.planner or DEFAULT
         if name not in PLANNERS:
-            raise PlanningError(
-                MoveItErrorCode.PLANNING_FAILED,
+            raise NoPlanError(
                 f"no planner '{name}' in pilz_industrial_motion_planner; "
-                f"there are {listing(PLANNERS)}",
+                f"there are {listing(PLANNERS)}"
             )
         goal = checked_goal(self.model, request, state)
         if name == "PTP":
@@ -168,9 +174,8 @@ class PilzPlanner:
             raise InvalidPlanError(f"the {path.name} point of CIRC has no primitive pose")
         links = [link.name for link in self.model.robot.links]
         if constraint.link and constraint.link not in links:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_LINK_NAME,
+            raise InvalidLinkError(
                 f"no link '{constraint.link}' for the {path.name} point of CIRC; the robot has "
-                f"{listing(links)}",
+                f"{listing(links)}"
             )
         return path.name, frame_position(self.model, goal.state, constraint)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_planning.errors import InvalidPlanError, MoveItErrorCode, PlanningError
+from arm_planning.errors import InvalidPlanError, InvalidStateError, PlanningError
 from arm_planning.planners.pilz.blend import DrivenMotion, Window, window
 from arm_planning.planners.pilz.planner import Free, PilzPlanner
 from arm_planning.planners.pilz.tip_motion import CLOSENESS, checked
@@ -104,10 +104,9 @@ def _check_starts(items: Sequence[SequenceItem]) -> None:
     seen: set[str] = set()
     for number, item in enumerate(items):
         if item.request.start and item.request.group in seen:
-            raise PlanningError(
-                MoveItErrorCode.INVALID_ROBOT_STATE,
+            raise InvalidStateError(
                 f"Only the first request of group '{item.request.group}' may have a start state; "
-                f"motion {number} has one, too",
+                f"motion {number} has one, too"
             )
         seen.add(item.request.group)
 

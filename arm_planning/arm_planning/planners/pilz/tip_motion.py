@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_node.rigid_transform import RigidTransform
-from arm_planning.errors import MoveItErrorCode, PlanningError
+from arm_planning.errors import NoPlanError, PlanningError
 from arm_planning.kinematics.inverse import InverseKinematics
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
 from arm_planning.planners.pose_line import PoseLine
@@ -125,7 +125,7 @@ def checked(
         acceleration_scaling=acceleration_scaling,
     )
     if fault:
-        raise PlanningError(MoveItErrorCode.PLANNING_FAILED, f"{name}: {fault}")
+        raise NoPlanError(f"{name}: {fault}")
     return trajectory
 
 
@@ -185,10 +185,9 @@ class _Followed:
             count *= 2
         changes = np.abs(np.diff(self._points, axis=0))
         step, joint = (int(each) for each in np.unravel_index(changes.argmax(), changes.shape))
-        raise PlanningError(
-            MoveItErrorCode.PLANNING_FAILED,
+        raise NoPlanError(
             f"{name}: joint '{kinematics.group.joints[joint]}' would have to jump by "
-            f"{changes[step, joint]:.3g} {self._where(step / len(changes))}, near a singularity",
+            f"{changes[step, joint]:.3g} {self._where(step / len(changes))}, near a singularity"
         )
 
     def positions(self, shares: Array) -> Array:
