@@ -30,7 +30,7 @@ from arm_description.publishers.ros_joint_state_publisher import JointStatePubli
 from arm_description.publishers.ros_robot_state_publisher import RobotStatePublisher
 from arm_gazebo.ros.live_parameters import declare_faults
 from arm_gazebo.run.settings import simulation_settings
-from arm_node.parameters import declare
+from arm_node.parameters import declare_setting
 from arm_viewer.ros.viewer import Viewer
 
 QUIET_DOMAIN = 101
@@ -142,7 +142,7 @@ def node_parameters_page() -> str:
     ]
     with _quiet_ros():
         node = Node("arm_gazebo")
-        simulation_settings(partial(declare, node))
+        simulation_settings(partial(declare_setting, node))
         declare_faults(node)
         lines += _section(
             node,

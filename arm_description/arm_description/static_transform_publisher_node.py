@@ -84,14 +84,14 @@ def _node(given: Mapping[str, float | str]) -> "Node":
     from rclpy.parameter import Parameter
     from tf2_msgs.msg import TFMessage
 
-    from arm_node.parameters import declare
+    from arm_node.parameters import declare_setting
     from arm_node.qos import LATCHED
 
     # As in ROS: several of them run at once, and nobody names each.
     suffix = "".join(random.choices(string.ascii_letters + string.digits, k=16))
     overrides = [Parameter(name, value=value) for name, value in given.items()]
     node = Node(f"static_transform_publisher_{suffix}", parameter_overrides=overrides)
-    settings = read_settings(_Settings, partial(declare, node))
+    settings = read_settings(_Settings, partial(declare_setting, node))
     parent, child = settings.frame_id, settings.child_frame_id
     if not parent or not child:
         raise SettingsError(f"--frame-id and --child-frame-id are needed; usage: {USAGE}")

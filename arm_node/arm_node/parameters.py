@@ -6,10 +6,15 @@ parameter is declared. A client that sets the parameter later must give the type
 """
 
 from array import array
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -20,9 +25,11 @@ from arm_node.parameter_values import (
     is_number,
     numbers_in,
     range_of,
+    read_parameter,
     refusal,
     wanted_by,
 )
+from arm_node.setting import Setting
 
 Type = Parameter.Type
 
@@ -44,33 +51,11 @@ def declare(
     description: str,
     *,
     read_only: bool = True,
-) -> Value:
-    """Declare a parameter and return its value; see `declare_from`.
-
-    Raises:
-        ParameterValueError: `read` refuses the given value; the message names the parameter.
-    """
-    given = given_parameters(node)
-    try:
-        return declare_from(given, node, name, default, read, description, read_only=read_only)
-    except ParameterValueError as error:
-        raise ParameterValueError(f"{name} {error}") from error
-
-
-def declare_from(
-    given: Mapping[str, object],
-    node: Node,
-    name: str,
-    default: object,
-    read: Reader[Value],
-    description: str,
-    *,
-    read_only: bool = True,
+    given: Mapping[str, object] | None = None,
 ) -> Value:
     """Declare a parameter and return its value, converted by `read`.
 
     Args:
-        given: the given values by parameter name.
         node: declares the parameter.
         name: of the parameter.
         default: its value if none is given; it also has the parameter's type. An empty list stands
@@ -78,29 +63,56 @@ def declare_from(
         read: converts the value; a reader of texts returns them.
         description: one line for `arm param describe`.
         read_only: whether it is fixed once the node runs.
+        given: the given values by parameter name; by default those of the node.
 
     Raises:
-        ParameterValueError: `read` refuses the given value.
+        ParameterValueError: `read` refuses the given value; the message names the parameter.
     """
-    kind = type_of(default)
-    own = given.get(name, default)
-    value = read(own)
+    kind, wanted = type_of(default), wanted_by(read)
+    own = (given_parameters(node) if given is None else given).get(name, default)
+    value = read_parameter(name, own, read)
     stored = _stored(value, own, kind)
-    wanted = wanted_by(read)
     if not _has_type(stored, kind):
-        raise refusal(wanted, own)
-    descriptor = ParameterDescriptor(
-        description=description, additional_constraints=wanted, read_only=read_only
+        raise ParameterValueError(f"{name} {refusal(wanted, own)}")
+    declare_typed(
+        node, name, kind, stored, description, wanted, read_only=read_only, bounds=range_of(read)
     )
-    set_range(descriptor, kind, range_of(read))
-    declare_typed(node, name, kind, stored, descriptor)
     return value
 
 
+def declare_setting(node: Node, each: Setting, given: Mapping[str, object] | None = None) -> Any:
+    """Declare the parameter of a setting and return its value; see `declare`."""
+    return declare(
+        node,
+        each.name,
+        each.default,
+        each.read,
+        each.about,
+        read_only=not each.changes,
+        given=given,
+    )
+
+
 def declare_typed(
-    node: Node, name: str, kind: Type, value: Any, descriptor: ParameterDescriptor
+    node: Node,
+    name: str,
+    kind: Type,
+    value: Any,
+    description: str,
+    constraints: str = "",
+    *,
+    read_only: bool = False,
+    bounds: tuple[float, float] | None = None,
 ) -> None:
-    """Declare a parameter of a type, whatever else is given for it; the value has that type."""
+    """Declare a parameter of a type, whatever else is given for it; the value has that type.
+
+    The constraints are in words, the bounds the smallest and the largest value of a number.
+    """
+    descriptor = ParameterDescriptor(
+        description=description, additional_constraints=constraints, read_only=read_only
+    )
+    if bounds is not None:
+        _set_range(descriptor, kind, *bounds)
     if kind not in _ELEMENTS:
         node.declare_parameter(name, value, descriptor, ignore_override=True)
         return
@@ -117,6 +129,21 @@ def given_parameters(node: Node) -> dict[str, Any]:
     # rclpy offers no other access to values that are not yet declared.
     overrides = node._parameter_overrides  # pyright: ignore[reportPrivateUsage]
     return {name: given.value for name, given in overrides.items()}
+
+
+def check_changes(
+    node: Node, check: Callable[[list[Parameter]], object], *refusals: type[Exception]
+) -> None:
+    """Call a function with the parameters that clients set; its errors refuse them, as a reason."""
+
+    def answer(changed: list[Parameter]) -> SetParametersResult:
+        try:
+            check(changed)
+        except refusals as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    node.add_on_set_parameters_callback(answer)
 
 
 def take_other_notations(node: Node, name: str) -> None:
@@ -143,27 +170,28 @@ def in_its_type(node: Node, given: Parameter) -> Parameter:
     return given
 
 
-def set_range(
-    descriptor: ParameterDescriptor, kind: Type, bounds: tuple[float, float] | None
-) -> None:
-    """Give the descriptor of a number its smallest and largest value."""
-    if bounds is None:
-        return
-    if kind is Type.INTEGER:
-        low, high = (int(min(max(bound, -_MAX_INT), _MAX_INT)) for bound in bounds)
-        descriptor.integer_range = [IntegerRange(from_value=low, to_value=high)]
-    elif kind is Type.DOUBLE:
-        low, high = map(float, bounds)
-        descriptor.floating_point_range = [FloatingPointRange(from_value=low, to_value=high)]
+def type_of(default: Any, element: type | None = None) -> Type:
+    """Return the type of a parameter with this default; see `declare`.
 
-
-def type_of(default: Any) -> Type:
-    """Return the type of a parameter with this default; see `declare`."""
+    `element` is the type of a list's elements, if it is known.
+    """
+    if element is not None:
+        return next(kind for kind, each in _ELEMENTS.items() if each is element)
     if isinstance(default, array):
         return Type.DOUBLE_ARRAY
     if isinstance(default, list | tuple) and not default:
         return Type.STRING_ARRAY
     return Type.from_parameter_value(default)
+
+
+def _set_range(descriptor: ParameterDescriptor, kind: Type, low: float, high: float) -> None:
+    """Give the descriptor of a number its smallest and largest value."""
+    if kind is Type.INTEGER:
+        low, high = (int(min(max(bound, -_MAX_INT), _MAX_INT)) for bound in (low, high))
+        descriptor.integer_range = [IntegerRange(from_value=low, to_value=high)]
+    elif kind is Type.DOUBLE:
+        bounds = FloatingPointRange(from_value=float(low), to_value=float(high))
+        descriptor.floating_point_range = [bounds]
 
 
 def _stored(value: object, given: object, kind: Type) -> Any:

@@ -7,7 +7,7 @@ from it:
     class PhysicsSettings:
         hold_joints: bool = setting(True, "joints that no controller claims hold their position")
 
-    settings = read_settings(PhysicsSettings, partial(declare, node))
+    settings = read_settings(PhysicsSettings, partial(declare_setting, node))
 
 No ROS is imported here, because launch files read declarations before anything starts.
 """
@@ -15,13 +15,12 @@ No ROS is imported here, because launch files read declarations before anything 
 import dataclasses
 from collections.abc import Callable, Mapping
 from functools import cache
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from arm_node.frozen import frozen
 from arm_node.parameter_values import (
     ParameterValueError,
     Reader,
-    Value,
     one_of,
     read_flag,
     read_integer,
@@ -38,29 +37,6 @@ _READERS: Mapping[type, Reader[Any]] = {
     float: read_number,
     str: read_text,
 }
-
-
-class Parameters(Protocol):
-    """A source of values: a node that declares parameters, or `given_values`."""
-
-    def __call__(
-        self,
-        name: str,
-        default: object,
-        read: Reader[Value],
-        description: str,
-        /,
-        *,
-        read_only: bool = True,
-    ) -> Value:
-        """Return the value of a parameter, converted by `read`.
-
-        `read_only` fixes it from the start.
-
-        Raises:
-            ParameterValueError: `read` refuses the value; the message names the parameter.
-        """
-        ...
 
 
 @frozen
@@ -90,11 +66,6 @@ class Setting:
     adapt: Callable[[Any], Any]
 
     @property
-    def parameter(self) -> tuple[str, Any, Reader[Any], str]:
-        """What a source of values takes: see `Parameters`."""
-        return self.name, self.default, self.read, self.about
-
-    @property
     def launch_argument(self) -> dict[str, Any]:
         """What DeclareLaunchArgument takes beside the name."""
         return {
@@ -102,6 +73,14 @@ class Setting:
             "description": self.about,
             "choices": list(self.choices) or None,
         }
+
+
+Parameters = Callable[[Setting], Any]
+"""A source of values: a node that declares parameters, or `given_values`.
+
+It returns the value of a setting's parameter, converted by `read`; ParameterValueError says that
+`read` refuses it, and names the parameter.
+"""
 
 
 def setting(
@@ -171,15 +150,7 @@ def read_settings(
         ParameterValueError: a value is invalid; the message names it and the valid values.
     """
     values = {
-        each.attribute: each.adapt(
-            parameters(
-                prefix + each.name,
-                each.default,
-                each.read,
-                each.about,
-                read_only=not each.changes,
-            )
-        )
+        each.attribute: each.adapt(parameters(dataclasses.replace(each, name=prefix + each.name)))
         for each in settings_of(cls)
     }
     return cls(**values, **others)
@@ -187,19 +158,7 @@ def read_settings(
 
 def given_values(values: Mapping[str, object]) -> Parameters:
     """Return a program's own values by parameter name as a source; others have their defaults."""
-
-    def value(
-        name: str,
-        default: object,
-        read: Reader[Value],
-        description: str,
-        /,
-        *,
-        read_only: bool = True,
-    ) -> Value:
-        return read_parameter(name, values.get(name, default), read)
-
-    return value
+    return lambda each: read_parameter(each.name, values.get(each.name, each.default), each.read)
 
 
 def _word(default: object) -> str:

@@ -38,14 +38,14 @@ from functools import partial
 import rclpy
 from rclpy.node import Node
 from arm_gazebo.run.settings import simulation_settings
-from arm_node.parameters import declare
+from arm_node.parameters import declare_setting
 from rclpy.signals import SignalHandlerOptions
 
 robot = "<robot name='r'><link name='l'/></robot>"
 given = ["--ros-args", "-p", f"robot_description:={robot}", "-p", "gravity:=3"]
 rclpy.init(args=given, signal_handler_options=SignalHandlerOptions.NO)
 node = Node("arm_gazebo")
-settings = simulation_settings(partial(declare, node))
+settings = simulation_settings(partial(declare_setting, node))
 about = node.describe_parameter("gravity")
 print(json.dumps({
     "value": settings.gravity_m_s2,

@@ -33,7 +33,7 @@ from arm_description.publishers.ros_robot_state_publisher import RobotStatePubli
 from arm_description.static_transform_publisher_node import _node as static_transform
 from arm_gazebo.ros.live_parameters import declare_faults
 from arm_gazebo.run.settings import simulation_settings
-from arm_node.parameters import declare
+from arm_node.parameters import declare_setting
 from arm_viewer.ros.viewer import Viewer
 
 pytestmark = pytest.mark.ros
@@ -61,7 +61,7 @@ PROCESS: Any = SimpleNamespace(stopping=False)
 
 def simulation_node() -> Node:
     node = Node("arm_gazebo")
-    simulation_settings(partial(declare, node))
+    simulation_settings(partial(declare_setting, node))
     declare_faults(node)
     return node
 

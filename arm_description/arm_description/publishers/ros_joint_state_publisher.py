@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 
-from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
@@ -17,7 +16,7 @@ from arm_description.errors import (
 from arm_description.publishers.joint_document import read_joints
 from arm_description.publishers.joint_state_merge import JointStateMerge
 from arm_description.publishers.settings import JointPublisherSettings
-from arm_node.parameters import declare, given_parameters
+from arm_node.parameters import check_changes, declare_setting, given_parameters
 from arm_node.printable import printable, printable_message
 from arm_node.qos import LATCHED
 
@@ -47,7 +46,7 @@ class JointStatePublisher(Node):
         self._settings = JointPublisherSettings.from_parameters(given)
         declared = list(JointPublisherSettings.declarations(given))
         for each in declared:
-            declare(self, *each.parameter, read_only=not each.changes)
+            declare_setting(self, each)
         self._names = [each.name for each in declared]
         self._fail = fail
         self._merge: JointStateMerge | None = None
@@ -58,20 +57,13 @@ class JointStatePublisher(Node):
         for topic in self._settings.source_list:
             self.create_subscription(JointState, topic, self._on_source, _QUEUE)
         self._timer = self.create_timer(1.0 / self._settings.rate_hz, self._publish)
-        self.add_on_set_parameters_callback(self._refuse_or_accept)
+        check_changes(self, self._checked, SettingsError)
         self.add_post_set_parameters_callback(self._take_parameters)
 
     def _checked(self, changes: list[Parameter]) -> JointPublisherSettings:
         values = {name: self.get_parameter(name).value for name in self._names}
         values.update((change.name, change.value) for change in changes)
         return JointPublisherSettings.from_parameters(values)
-
-    def _refuse_or_accept(self, changes: list[Parameter]) -> SetParametersResult:
-        try:
-            self._checked(changes)
-        except SettingsError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
 
     def _take_parameters(self, _changes: list[Parameter]) -> None:
         self._settings = self._checked([])

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 import numpy as np
 from geometry_msgs.msg import TransformStamped
 from numpy.typing import NDArray
-from rcl_interfaces.msg import SetParametersResult
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -26,7 +25,7 @@ from arm_description.urdf.parser import parse_urdf
 from arm_node.executor_thread import ExecutorThread
 from arm_node.frozen import frozen
 from arm_node.names import listing
-from arm_node.parameters import declare_from, given_parameters
+from arm_node.parameters import check_changes, declare_setting, given_parameters
 from arm_node.printable import printable
 from arm_node.qos import LATCHED
 from arm_node.setting import settings_of
@@ -151,7 +150,7 @@ class RobotStatePublisher(Node):
             given["robot_description"] = self._text_of(urdf_file)
         self._settings = StatePublisherSettings.from_parameters(given)
         for each in settings_of(StatePublisherSettings):
-            declare_from(given, self, *each.parameter, read_only=not each.changes)
+            declare_setting(self, each, given)
         self._tree = TransformTree(parse_urdf(self._settings.robot_description))
         self._moved_back_s = -math.inf
         self._throttle = StateThrottle(self._settings.publish_frequency_hz)
@@ -179,7 +178,7 @@ class RobotStatePublisher(Node):
             qos_overriding_options=QoSOverridingOptions(policies),
         )
         # After all declarations, because the callbacks would also receive those of QoS overrides.
-        self.add_on_set_parameters_callback(self._refuse_or_accept)
+        check_changes(self, self._check_changes, DescriptionError)
         self.add_post_set_parameters_callback(self._take_parameters)
         self._publish_description()
         self._publish_static()
@@ -207,14 +206,10 @@ class RobotStatePublisher(Node):
         values.update((change.name, change.value) for change in changes)
         return StatePublisherSettings.from_parameters(values)
 
-    def _refuse_or_accept(self, changes: list[Parameter]) -> SetParametersResult:
-        try:
-            settings = self._checked(changes)
-            if settings.robot_description != self._settings.robot_description:
-                parse_urdf(settings.robot_description)
-        except DescriptionError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
+    def _check_changes(self, changes: list[Parameter]) -> None:
+        settings = self._checked(changes)
+        if settings.robot_description != self._settings.robot_description:
+            parse_urdf(settings.robot_description)
 
     def _take_parameters(self, _changes: list[Parameter]) -> None:
         before, self._settings = self._settings, self._checked(())

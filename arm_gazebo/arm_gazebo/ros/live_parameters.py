@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -19,7 +18,7 @@ from arm_gazebo.faults.fault import USAGE, Fault, read_fault
 from arm_gazebo.faults.injector import FaultInjector
 from arm_gazebo.run.run import SimulationRun
 from arm_node.parameter_values import ParameterValueError, read_parameter, read_texts
-from arm_node.parameters import declare, take_other_notations
+from arm_node.parameters import check_changes, declare, take_other_notations
 from arm_node.setting import Setting
 
 if TYPE_CHECKING:
@@ -33,21 +32,17 @@ def follow_setting(node: Node, setting: Setting, apply: Callable[[Any], object])
     new value on the thread of the node's executor.
     """
 
-    def check(changed: Sequence[Parameter]) -> SetParametersResult:
-        try:
-            for parameter in changed:
-                if parameter.name == setting.name:
-                    read_parameter(setting.name, parameter.value, setting.read)
-        except ParameterValueError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
+    def check(changed: Sequence[Parameter]) -> None:
+        for parameter in changed:
+            if parameter.name == setting.name:
+                read_parameter(setting.name, parameter.value, setting.read)
 
     def take(changed: Sequence[Parameter]) -> None:
         for parameter in changed:
             if parameter.name == setting.name:
                 apply(setting.adapt(setting.read(parameter.value)))
 
-    node.add_on_set_parameters_callback(check)
+    check_changes(node, check, ParameterValueError)
     node.add_post_set_parameters_callback(take)
 
 
@@ -72,7 +67,7 @@ class RunRecording:
         self._recorder: RunRecorder | None = None
         if path:
             self._begin(path)
-        node.add_on_set_parameters_callback(self._take)
+        check_changes(node, self._take, RecordingError, LoopStoppedError)
 
     def supervise(self) -> None:
         """End a recording whose file can no longer be written; it has logged why."""
@@ -85,14 +80,10 @@ class RunRecording:
         with suppress(LoopStoppedError):
             self._end("the simulation ended")
 
-    def _take(self, changed: Sequence[Parameter]) -> SetParametersResult:
-        try:
-            for parameter in changed:
-                if parameter.name == RECORD_RUN:
-                    self._change(str(parameter.value))
-        except (RecordingError, LoopStoppedError) as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
+    def _take(self, changed: Sequence[Parameter]) -> None:
+        for parameter in changed:
+            if parameter.name == RECORD_RUN:
+                self._change(str(parameter.value))
 
     def _change(self, path: str) -> None:
         if not path:
@@ -151,22 +142,20 @@ class FaultParameter:
         self._loop = loop
         declare_faults(node)
         take_other_notations(node, FAULTS)
-        node.add_on_set_parameters_callback(self._take)
+        check_changes(node, self._take, FaultError)
 
-    def _take(self, changed: Sequence[Parameter]) -> SetParametersResult:
+    def _take(self, changed: Sequence[Parameter]) -> None:
         try:
             for parameter in changed:
                 if parameter.name == FAULTS:
                     wanted = [read_fault(text) for text in read_texts(list(parameter.value or ()))]
-                    self._loop.call(lambda faults=wanted: self._change(faults)).result(
-                        LOOP_TIMEOUT_S
-                    )
+                    call = self._loop.call(lambda faults=wanted: self._change(faults))
+                    call.result(LOOP_TIMEOUT_S)
         except (ParameterValueError, FaultError, LoopStoppedError) as error:
-            return SetParametersResult(successful=False, reason=f"{FAULTS}: {error}")
-        except FutureTimeoutError:
-            reason = f"{FAULTS}: the simulation did not respond within {LOOP_TIMEOUT_S:g} s"
-            return SetParametersResult(successful=False, reason=reason)
-        return SetParametersResult(successful=True)
+            raise FaultError(f"{FAULTS}: {error}") from error
+        except FutureTimeoutError as error:
+            reason = f"the simulation did not respond within {LOOP_TIMEOUT_S:g} s"
+            raise FaultError(f"{FAULTS}: {reason}") from error
 
     def _change(self, wanted: Sequence[Fault]) -> None:
         """Begin and end faults so that those in the list remain, all or nothing. Loop thread."""

@@ -36,7 +36,7 @@ from arm_gazebo.run.settings import RobotSettings, SimulationSettings, simulatio
 from arm_gazebo.window.display import check_display
 from arm_gazebo.window.process import WindowFeed
 from arm_node.notify import notify
-from arm_node.parameters import declare
+from arm_node.parameters import declare_setting
 from arm_node.process import EXIT_FAILED, NodeProcess
 from arm_node.setting import setting_of
 from arm_node.workarounds.clocks import ProcessClock
@@ -66,7 +66,7 @@ def simulation_process(process: NodeProcess, arguments: Sequence[str]) -> Iterat
         node = first_node(lambda: Node(NODE_NAME))
         nodes.callback(node.destroy_node)
         process.executor.add_node(node)
-        settings = simulation_settings(partial(declare, node))
+        settings = simulation_settings(partial(declare_setting, node))
         outbox = Outbox()
         clock = RosClockPublisher(node, outbox)
         # A lock-step takes the commands out of the process's executor.

@@ -8,7 +8,6 @@ from array import array
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -24,7 +23,7 @@ from arm_gazebo.world.entity_properties import (
     with_gravity,
 )
 from arm_node.frozen import frozen
-from arm_node.parameters import declare_typed, take_other_notations, type_of
+from arm_node.parameters import check_changes, declare_typed, take_other_notations, type_of
 
 GRAVITY = "gravity"
 PREFIX, MASS, FRICTION = "entities", "mass", "friction"
@@ -73,7 +72,7 @@ class WorldParameters:
         self._follow()
         editor.watchers.append(self._follow)
         take_other_notations(node, GRAVITY)
-        node.add_on_set_parameters_callback(self._take)
+        check_changes(node, self._take, RequestError)
 
     def _follow(self) -> None:
         """Declare, set and remove parameters, so that they are those of the present world."""
@@ -83,11 +82,7 @@ class WorldParameters:
         for name, item in self._present.items():
             kind = type_of(item.value)
             if name not in before:
-                description, constraints = WANTED[item.kind]
-                descriptor = ParameterDescriptor(
-                    description=description, additional_constraints=constraints
-                )
-                declare_typed(self._node, name, kind, item.value, descriptor)
+                declare_typed(self._node, name, kind, item.value, *WANTED[item.kind])
             elif item != before[name]:
                 self._node.set_parameters([Parameter(name, kind, _plain(item.value))])
 
@@ -98,20 +93,16 @@ class WorldParameters:
                 if value is not None:
                     yield f"{PREFIX}.{entity}.{kind}", _Property(kind, value, entity)
 
-    def _take(self, changed: Sequence[Parameter]) -> SetParametersResult:
+    def _take(self, changed: Sequence[Parameter]) -> None:
         """Change the world as a client wishes, all or nothing."""
-        try:
-            changes = wanted = self._properties.changes
-            for parameter in changed:
-                item = self._present.get(parameter.name)
-                # The parameters that follow the world have its values already.
-                if item is not None and parameter.value != item.value:
-                    wanted = self._with(wanted, item, parameter.value)
-            if wanted != changes:
-                self._properties.apply(wanted)
-        except RequestError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
+        changes = wanted = self._properties.changes
+        for parameter in changed:
+            item = self._present.get(parameter.name)
+            # The parameters that follow the world have its values already.
+            if item is not None and parameter.value != item.value:
+                wanted = self._with(wanted, item, parameter.value)
+        if wanted != changes:
+            self._properties.apply(wanted)
 
     def _with(self, changes: PropertyChanges, item: _Property, value: Any) -> PropertyChanges:
         if item.kind == GRAVITY:

@@ -89,6 +89,13 @@ class RobotSettings:
     )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Namespaces:
+    robots: tuple[str, ...] = setting(
+        (), "namespaces of several robots; none for a single one", read_words
+    )
+
+
 def read_robots(parameters: Parameters) -> tuple[RobotSettings, ...]:
     """Return the single robot, or the robots that the parameter `robots` names.
 
@@ -97,9 +104,7 @@ def read_robots(parameters: Parameters) -> tuple[RobotSettings, ...]:
     Raises:
         ParameterValueError: a value is invalid, or a name occurs twice.
     """
-    names = parameters(
-        "robots", (), read_words, "namespaces of several robots; none for a single one"
-    )
+    names = read_settings(_Namespaces, parameters).robots
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise ParameterValueError(f"robots names '{twice}' twice; each needs its own namespace")

@@ -12,7 +12,6 @@ from geometry_msgs.msg import PoseStamped, TwistStamped
 from moveit_msgs.msg import PlanningScene as SceneMessage
 from moveit_msgs.msg import ServoStatus
 from moveit_msgs.srv import GetPlanningScene, ServoCommandType
-from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
@@ -20,9 +19,9 @@ from std_msgs.msg import Header
 from std_srvs.srv import SetBool
 
 from arm_node.names import describe_known
-from arm_node.parameter_values import Reader, Value, read_parameter
+from arm_node.parameter_values import read_parameter
 from arm_node.parameters import declare_typed, type_of
-from arm_node.setting import read_settings, settings_of
+from arm_node.setting import Setting, read_settings, settings_of
 from arm_planning.errors import InvalidRequestError, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.ros.answering import offer_service
@@ -345,24 +344,16 @@ def read_servo_settings(node: Node) -> ServoSettings:
         ParameterValueError: a value is invalid.
     """
 
-    def value(
-        name: str,
-        default: object,
-        read: Reader[Value],
-        description: str,
-        /,
-        *,
-        read_only: bool = True,
-    ) -> Value:
-        full = f"{PREFIX}.{name}"
-        given = node.has_parameter(full)
-        found = read_parameter(full, node.get_parameter(full).value if given else default, read)
+    def value(each: Setting) -> Any:
+        given = node.has_parameter(each.name)
+        own = node.get_parameter(each.name).value if given else each.default
+        found = read_parameter(each.name, own, each.read)
         if not given:
-            descriptor = ParameterDescriptor(description=description, read_only=read_only)
-            declare_typed(node, full, type_of(default), default, descriptor)
+            kind, read_only = type_of(each.default), not each.changes
+            declare_typed(node, each.name, kind, own, each.about, read_only=read_only)
         return found
 
-    settings = read_settings(ServoSettings, value)
+    settings = read_settings(ServoSettings, value, f"{PREFIX}.")
     for warning in unknown_names(set(values_below(node, PREFIX))):
         LOGGER.warning("%s", warning)
     return settings

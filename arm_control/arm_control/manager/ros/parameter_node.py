@@ -12,7 +12,7 @@ from rclpy.parameter import Parameter
 from arm_control.errors import ParameterError
 from arm_control.manager.controller_creation import given_value, strings_of, unknown_parameters
 from arm_control.parameters import ParameterSpec
-from arm_node.parameters import declare_typed, given_parameters, in_its_type, set_range, type_of
+from arm_node.parameters import declare_typed, given_parameters, in_its_type, type_of
 
 UNKNOWN = "Given, but not known to this node"
 TYPE_OF_CONTROLLER = "Type of the controller"
@@ -23,18 +23,6 @@ OF_CONTROLLERS = {
     "node_options_args": "ROS arguments for the controller's node",
 }
 """Of what a file gives for a controller, by the part of the name behind the controller's."""
-_TYPES = {
-    bool: Parameter.Type.BOOL,
-    int: Parameter.Type.INTEGER,
-    float: Parameter.Type.DOUBLE,
-    str: Parameter.Type.STRING,
-}
-_LIST_TYPES = {
-    bool: Parameter.Type.BOOL_ARRAY,
-    int: Parameter.Type.INTEGER_ARRAY,
-    float: Parameter.Type.DOUBLE_ARRAY,
-    str: Parameter.Type.STRING_ARRAY,
-}
 
 
 class ParameterNode(Node):
@@ -97,11 +85,9 @@ class ParameterNode(Node):
         for name, value in self.given_parameters().items():
             if self.has_parameter(name):
                 continue
-            kind = type_of(() if value is None else value)
-            about = ParameterDescriptor(
-                description=OF_CONTROLLERS.get(name.rpartition(".")[2], UNKNOWN)
-            )
-            declare_typed(self, name, kind, () if value is None else value, about)
+            own = () if value is None else value
+            about = OF_CONTROLLERS.get(name.rpartition(".")[2], UNKNOWN)
+            declare_typed(self, name, type_of(own), own, about)
 
     def strings(self, name: str) -> tuple[str, ...]:
         """Return a parameter that is one string or several, declared or not; empty for none.
@@ -125,11 +111,13 @@ class ParameterNode(Node):
         return {spec.name: self.get_parameter(spec.name).value for spec in specs}
 
     def _declare(self, spec: ParameterSpec, value: Any) -> None:
-        kind = (_LIST_TYPES if spec.is_list else _TYPES)[spec.type]
-        descriptor = ParameterDescriptor(
-            description=spec.description,
+        declare_typed(
+            self,
+            spec.name,
+            type_of(spec.default, spec.type if spec.is_list else None),
+            value or () if spec.is_list else value,
+            spec.description,
+            spec.constraint,
             read_only=spec.read_only,
-            additional_constraints=spec.constraint,
+            bounds=spec.range,
         )
-        set_range(descriptor, kind, spec.range)
-        declare_typed(self, spec.name, kind, value or () if spec.is_list else value, descriptor)
