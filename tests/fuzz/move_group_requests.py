@@ -21,12 +21,11 @@ from arm_planning import Planner
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.planners.pilz.cartesian_limits import CartesianLimits
 from arm_planning.request import PlanRequest
-from arm_planning.ros.answering import BusyLimit
+from arm_planning.ros.answering import BusyLimit, QuickServices
 from arm_planning.ros.convert_scene import scene_change_of
 from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planning_services import PlanningServices, StateServices
 from arm_planning.ros.planning_session import PlanningSession
-from arm_planning.ros.quick_services import QuickServices
 from arm_planning.ros.robot_setup import PlanningSetup
 from arm_planning.ros.sequence_server import SequenceSession
 from arm_planning.scene.scene import PlanningScene

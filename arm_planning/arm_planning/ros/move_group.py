@@ -14,7 +14,13 @@ from arm_node.executor_thread import ExecutorThread
 from arm_node.qos import LATCHED
 from arm_planning.errors import MoveItErrorCode
 from arm_planning.execution import EXECUTION, ExecutionSettings, controllers_of_settings
-from arm_planning.ros.answering import BusyLimit, offer_service
+from arm_planning.ros.answering import (
+    BusyLimit,
+    QuickExecutor,
+    QuickServices,
+    SlowExecutor,
+    offer_service,
+)
 from arm_planning.ros.controller_list import ControllerList
 from arm_planning.ros.convert import error_code
 from arm_planning.ros.geometry_files import GeometryFiles
@@ -25,7 +31,6 @@ from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planner_parameters import PlannerParameterServices
 from arm_planning.ros.planning_services import PlanningServices, StateServices
 from arm_planning.ros.planning_session import PlanningSession
-from arm_planning.ros.quick_services import QuickExecutor, QuickServices, SlowExecutor
 from arm_planning.ros.robot_setup import PlanningSetup, switch_of, values_below
 from arm_planning.ros.scene_monitor import SceneMonitor
 from arm_planning.ros.sequence_server import SequenceServer

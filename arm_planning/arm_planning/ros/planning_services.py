@@ -26,7 +26,7 @@ from arm_planning.errors import InvalidLinkError, MoveItErrorCode, PlanningError
 from arm_planning.pipeline import Timing
 from arm_planning.planner import Planner, TimedCartesianPath, pipelines
 from arm_planning.planners.cartesian import JumpLimits
-from arm_planning.ros.answering import BusyLimit, offer_service
+from arm_planning.ros.answering import BusyLimit, QuickServices, offer_service
 from arm_planning.ros.convert import (
     error_code,
     pose_message,
@@ -39,7 +39,6 @@ from arm_planning.ros.convert import (
 from arm_planning.ros.convert_constraints import constraints_of
 from arm_planning.ros.plan_display import PlanDisplay
 from arm_planning.ros.planning_session import PlanningSession
-from arm_planning.ros.quick_services import QuickServices
 from arm_planning.scene.scene import PlanningScene
 
 LOGGER = logging.getLogger("move_group")

@@ -14,8 +14,7 @@ from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
 
 from arm_node.executor_thread import ExecutorThread
-from arm_planning.ros.answering import offer_service
-from arm_planning.ros.quick_services import QuickExecutor, QuickServices, SlowExecutor
+from arm_planning.ros.answering import QuickExecutor, QuickServices, SlowExecutor, offer_service
 
 TIMEOUT_S = 30.0
 SLOW_THREADS = 2
