@@ -52,6 +52,12 @@ class PositionMap:
     matrix: Array
     constant: Array
 
+    @property
+    def is_identity(self) -> bool:
+        """Whether the joints are those that vary, in the same order."""
+        matrix = self.matrix
+        return np.array_equal(matrix, np.eye(matrix.shape[1])) and not self.constant.any()
+
     def __call__(self, q: Array) -> Array:
         """Return the positions of all joints, (m,), for those that vary, (n,)."""
         return self.matrix @ q + self.constant

@@ -47,10 +47,7 @@ class PosedScene:
         self.links = compiled.links
         self.coordinates = compiled.coordinates
         self._qpos, self._option = self.data.qpos, self.model.opt
-        matrix = self.coordinates.matrix
-        self._direct = bool(
-            np.array_equal(matrix, np.eye(matrix.shape[1])) and not self.coordinates.constant.any()
-        )
+        self._direct = self.coordinates.is_identity
 
     def leave_out_apart(self) -> None:
         """Leave out what never touches from MuJoCo's search, in which each body takes time.

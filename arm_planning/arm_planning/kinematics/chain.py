@@ -52,13 +52,8 @@ class Chain:
         leaders = (robot.leader_of(name, {*joints, *positions}).joint for name in carrying)
         self.others = tuple(name for name in dict.fromkeys(leaders) if name not in joints)
         self.moving = self._map.matrix.any(axis=0)
-        matrix = self._map.matrix
         # Without other joints and mimic joints in between, the model's joints are the given ones.
-        self._direct = bool(
-            matrix.shape[0] == matrix.shape[1]
-            and (matrix == np.eye(len(matrix))).all()
-            and not self._map.constant.any()
-        )
+        self._direct = self._map.is_identity
         self._model = tree.spec.compile()
         self._data = mujoco.MjData(self._model)
         self._body = tree.bodies[tip].id

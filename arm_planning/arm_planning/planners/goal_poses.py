@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.transforms import rotation_from_quaternion
+from arm_description.transforms import rotation_about, rotation_from_quaternion
 from arm_description.urdf.robot import Box, Cylinder, Sphere
 from arm_planning.constraints.constraints import (
     MotionConstraints,
@@ -121,7 +121,4 @@ def _rotation(each: OrientationConstraint, random: np.random.Generator | None) -
 def _about(vector: tuple[float, float, float]) -> Array:
     """Return the rotation by a rotation vector, (3, 3)."""
     angle = float(np.linalg.norm(vector))
-    if angle == 0.0:
-        return np.eye(3)
-    x, y, z = (component / angle * np.sin(angle / 2.0) for component in vector)
-    return rotation_from_quaternion(np.array([x, y, z, np.cos(angle / 2.0)]))
+    return rotation_about([each / (angle or 1.0) for each in vector], angle)

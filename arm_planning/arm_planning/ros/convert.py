@@ -20,7 +20,7 @@ from arm_planning.errors import (
     MoveItErrorCode,
 )
 from arm_planning.robot.model import JointPositions, PlanningModel
-from arm_planning.scene.object_checks import LARGEST_M, UNIT
+from arm_planning.scene.object_checks import rotation_problem, vector_problem
 from arm_planning.trajectory import TimedTrajectory
 
 NANOSECONDS = 1_000_000_000
@@ -43,10 +43,8 @@ def vector_of(message: Point | Vector3, what: str) -> Vector:
         PlanningError: a coordinate is not finite, or too large; `what` names the vector.
     """
     vector = (message.x, message.y, message.z)
-    if not all(map(math.isfinite, vector)):
-        raise InvalidRequestError(f"{what} is not finite: {listing(map(str, vector))}")
-    if max(map(abs, vector)) > LARGEST_M:
-        raise InvalidRequestError(f"{what} is beyond {LARGEST_M:g} m: {listing(map(str, vector))}")
+    if problem := vector_problem(vector, what):
+        raise InvalidRequestError(problem)
     return vector
 
 
@@ -73,12 +71,9 @@ def quaternion_of(message: Quaternion, what: str) -> tuple[float, float, float, 
         PlanningError: a number is not finite, or the norm is not 1; `what` names the pose.
     """
     numbers = (message.x, message.y, message.z, message.w)
+    if problem := rotation_problem(numbers, what):
+        raise InvalidRequestError(problem)
     norm = math.hypot(*numbers)
-    if not abs(norm - 1.0) <= UNIT:
-        raise InvalidRequestError(
-            f"the orientation of {what} is no unit quaternion: its norm is {norm:.4g}; no rotation "
-            "is (0, 0, 0, 1)"
-        )
     x, y, z, w = (number / norm for number in numbers)
     return (x, y, z, w)
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from arm_description.urdf.robot import Box, Cylinder, Sphere
-from arm_node.rigid_transform import RigidTransform
+from arm_node.rigid_transform import Quaternion, RigidTransform
 from arm_planning.errors import InvalidObjectError
 from arm_planning.scene.objects import PlacedShape
 from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
@@ -19,6 +19,32 @@ LARGEST_M = 1e6
 """Largest coordinate and size, in m; beyond it, numbers are too coarse, their squares too large."""
 
 
+def vector_problem(vector: Sequence[float], what: str) -> str:
+    """Return what is wrong with a point or a vector, in m, as a sentence about it; or ""."""
+    if not all(map(math.isfinite, vector)):
+        return f"{what} is not finite: {_listed(vector)}"
+    if max(map(abs, vector)) > LARGEST_M:
+        return f"{what} is beyond {LARGEST_M:g} m: {_listed(vector)}"
+    return ""
+
+
+def rotation_problem(quaternion: Quaternion, what: str) -> str:
+    """Return what is wrong with a quaternion, as a sentence about whose it is; or ""."""
+    norm = math.hypot(*quaternion)
+    if abs(norm - 1.0) <= UNIT:
+        return ""
+    return (
+        f"the orientation of {what} is no unit quaternion: its norm is {norm:.4g}; no rotation "
+        "is (0, 0, 0, 1)"
+    )
+
+
+def pose_problem(pose: RigidTransform, what: str) -> str:
+    """Return what is wrong with a pose, as a sentence; or ""."""
+    position = vector_problem(pose.position, f"the position of {what}")
+    return position or rotation_problem(pose.rotation, what)
+
+
 def check_pose(pose: RigidTransform, what: str) -> None:
     """Refuse a pose that is none.
 
@@ -26,18 +52,8 @@ def check_pose(pose: RigidTransform, what: str) -> None:
         PlanningError: INVALID_OBJECT_NAME: a number is not finite, or the quaternion is no unit
             one; `what` names the pose.
     """
-    if not all(map(math.isfinite, pose.position)):
-        raise InvalidObjectError(f"the position of {what} is not finite: {_listed(pose.position)}")
-    if max(map(abs, pose.position)) > LARGEST_M:
-        raise InvalidObjectError(
-            f"the position of {what} is beyond {LARGEST_M:g} m: {_listed(pose.position)}"
-        )
-    norm = math.hypot(*pose.rotation)
-    if not abs(norm - 1.0) <= UNIT:
-        raise InvalidObjectError(
-            f"the orientation of {what} is no unit quaternion: its norm is {norm:.4g}; no rotation "
-            "is (0, 0, 0, 1)"
-        )
+    if problem := pose_problem(pose, what):
+        raise InvalidObjectError(problem)
 
 
 def check_shapes(shapes: Sequence[PlacedShape], owner: str) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_planning.constraints.evaluation import rotation_vector
 from arm_planning.kinematics.chain import Chain
 from arm_planning.servo.joint_bounds import JointBounds
 from arm_planning.servo.settings import ServoSettings
@@ -171,20 +172,8 @@ class TipVelocity:
 
 def pose_difference(start: Array, end: Array) -> Array:
     """Return the way from one pose to another, both (4, 4): m, then a rotation vector, (6,)."""
-    turn = end[:3, :3] @ start[:3, :3].T
-    sine = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
-    cosine = (float(np.trace(turn)) - 1.0) / 2.0
-    size = float(np.linalg.norm(sine))
-    angle = math.atan2(size, cosine)
-    if size > 1e-9:
-        rotation = sine * (angle / size)
-    elif cosine > 0.0:
-        rotation = sine
-    else:
-        # Half a turn: any column of turn + 1 is along the axis.
-        column = (turn + np.eye(3))[:, int(np.argmax(np.diag(turn)))]
-        rotation = math.pi * column / np.linalg.norm(column)
-    return np.concatenate([end[:3, 3] - start[:3, 3], rotation])
+    turn = rotation_vector(end[:3, :3] @ start[:3, :3].T)
+    return np.concatenate([end[:3, 3] - start[:3, 3], turn])
 
 
 def _status(code: StatusCode, condition: float) -> JogStatus:

@@ -291,14 +291,14 @@ NAN = float("nan")
 @pytest.mark.parametrize(
     ("target", "message"),
     [
-        (RigidTransform((NAN, 0.0, 0.0)), r"position has a number that is not finite: \(nan, 0, 0"),
+        (RigidTransform((NAN, 0.0, 0.0)), "position of the target is not finite: nan, 0, 0"),
         (
             RigidTransform((0.0, 1e300, 0.0)),
-            r"\(0, 1e\+300, 0\) is more than 1000 km away",
+            r"is beyond 1e\+06 m: 0, 1e\+300, 0",
         ),
-        (RigidTransform(rotation=(0.0, 0.0, 0.0, 0.0)), "quaternion .* has length 0 instead of 1"),
-        (RigidTransform(rotation=(0.0, 0.0, 1.0, 1.0)), "quaternion .* has length 1.41 instead"),
-        (RigidTransform(rotation=(0.0, 0.0, NAN, 1.0)), "quaternion has a number that is not fin"),
+        (RigidTransform(rotation=(0.0, 0.0, 0.0, 0.0)), "no unit quaternion: its norm is 0;"),
+        (RigidTransform(rotation=(0.0, 0.0, 1.0, 1.0)), "no unit quaternion: its norm is 1.414;"),
+        (RigidTransform(rotation=(0.0, 0.0, NAN, 1.0)), "no unit quaternion: its norm is nan;"),
         (np.eye(3), r"a transform of shape \(4, 4\), not \(3, 3\)"),
         (np.diag((2.0, 1.0, 1.0, 1.0)), "rotation matrix is not orthonormal"),
         (np.diag((-1.0, 1.0, 1.0, 1.0)), "rotation matrix is not orthonormal and right-handed"),

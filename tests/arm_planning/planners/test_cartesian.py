@@ -229,7 +229,7 @@ def test_steps_that_make_no_path_are_refused(arm, max_step, message):
 def test_a_way_point_that_is_no_pose_is_refused_by_its_number(arm):
     begin = arm.tip_pose(START)
     bad = RigidTransform((0.0, 0.0, float("nan")))
-    with pytest.raises(PlanningError, match="way point 2 of 2: the target's position has"):
+    with pytest.raises(PlanningError, match="way point 2 of 2: the position of the target is not"):
         cartesian_path(arm, START, (begin, bad), 0.01)
 
 

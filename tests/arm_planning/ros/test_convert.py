@@ -46,7 +46,7 @@ def test_a_pose_that_is_none_is_refused_in_a_sentence():
         pose_of(message, "the goal")
     message = Pose()
     message.position.y = math.nan
-    with pytest.raises(PlanningError, match=r"the position of the goal is not finite: 0\.0, nan"):
+    with pytest.raises(PlanningError, match="the position of the goal is not finite: 0, nan, 0"):
         pose_of(message, "the goal")
 
 
