@@ -1,7 +1,7 @@
 """The report to the user: what the model builder repaired, dropped or left out."""
 
 import logging
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from enum import Enum
 
@@ -66,6 +66,15 @@ class Finding:
         return f"{where}: {self.message}"
 
 
+def as_one(findings: Sequence[Finding]) -> Finding:
+    """Return the first of findings that are alike, with the number of the others in its name."""
+    first, others = findings[0], len(findings) - 1
+    if not others:
+        return first
+    count = sum(finding.count for finding in findings)
+    return replace(first, element=f"{first.element} and {others} more", count=count)
+
+
 def shown(findings: Iterable[Finding]) -> Iterator[Finding]:
     """Yield findings to show in their order, many alike as one: a hand may have 24 bad links."""
     groups: dict[tuple[BuildOutcome, str, str], list[Finding]] = {}
@@ -76,9 +85,7 @@ def shown(findings: Iterable[Finding]) -> Iterator[Finding]:
         if len(group) <= MAX_ALIKE:
             yield from group
         else:
-            count = sum(finding.count for finding in group)
-            name = f"{group[0].element} and {len(group) - 1} more"
-            yield replace(group[0], element=name, count=count)
+            yield as_one(group)
 
 
 class BuildReport:

@@ -121,22 +121,15 @@ def arm_sim(request: pytest.FixtureRequest, _arm_sim_pool: "SimulationPool") -> 
 
 def _simulation(item: pytest.Item, pool: "SimulationPool") -> "BenchSimulation | str":
     """Return a simulation, or a sentence that says why there is none."""
-    from arm_control.errors import ArmControlError
-    from arm_description.errors import DescriptionError
-    from arm_gazebo.errors import GazeboError
-    from arm_node.parameter_values import ParameterValueError
     from arm_sim.bench.configuration import arguments_of, marked_arguments
-    from arm_sim.errors import ArmSimError
     from arm_sim.simulation import Simulation
+    from arm_sim.user_traceback import USER_ERRORS
 
-    user_errors = (
-        ArmSimError, ArmControlError, DescriptionError, GazeboError, ParameterValueError,
-    )  # fmt: skip
     try:
         # The bench records each test itself.
         known = ["robot", *(name for name in arguments_of(Simulation.__init__) if name != "record")]
         return pool.take(marked_arguments(item, "arm_sim", known))
-    except user_errors as error:
+    except USER_ERRORS as error:
         return str(error)
 
 

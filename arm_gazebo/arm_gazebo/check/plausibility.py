@@ -17,7 +17,7 @@ from arm_description.urdf.robot import (
     Robot,
     Sphere,
 )
-from arm_gazebo.build_report import BuildOutcome, Finding
+from arm_gazebo.build_report import BuildOutcome, Finding, as_one
 from arm_gazebo.model.built_model import BuiltModel
 
 MANY_TURNS_RAD = 10.0 * math.tau
@@ -49,9 +49,7 @@ def _once(findings: Iterator[Finding | None]) -> Iterator[Finding]:
     """Yield the first finding, with the number of the others."""
     found = [finding for finding in findings if finding is not None]
     if found:
-        first, others = found[0], len(found) - 1
-        name = f"{first.element} and {others} more" if others else first.element
-        yield Finding(first.outcome, name, first.message, first.line, len(found))
+        yield as_one(found)
 
 
 def _in_degrees(joint: Joint) -> Finding | None:

@@ -7,13 +7,12 @@ in a link.
 """
 
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator
 from typing import Any
 
 from arm_description.urdf.description import RobotDescription
 from arm_description.urdf.element import QUATERNION, UrdfElement
-from arm_gazebo.build_report import BuildOutcome, Finding
+from arm_gazebo.build_report import BuildOutcome, Finding, as_one
 from arm_gazebo.sensors.reader import sensor_type
 from arm_gazebo.sensors.tags import COLOR_FORMATS
 
@@ -33,14 +32,8 @@ _READ: dict[str, Any] = {
         "collision": {**_SHAPES, "material": None},
     },
     "joint": {
-        "origin": {},
-        "parent": {},
-        "child": {},
-        "axis": {},
-        "limit": {},
-        "dynamics": {},
-        "mimic": {},
-        "safety_controller": {},
+        **{"origin": {}, "parent": {}, "child": {}, "axis": {}, "limit": {}},
+        **{"dynamics": {}, "mimic": {}, "safety_controller": {}},
     },
     "gazebo": None,
     "ros2_control": None,
@@ -86,12 +79,7 @@ def unread_elements(description: RobotDescription) -> tuple[Finding, ...]:
     own = _unknown_attributes(root, ROBOT) if root.tag == "robot" else ()
     for kind, finding in (*own, *_unknown(root, _READ, ROBOT), *_meaningless(description)):
         groups.setdefault(kind, []).append(finding)
-    return tuple(_counted(group) for group in groups.values())
-
-
-def _counted(group: Sequence[Finding]) -> Finding:
-    first, others = group[0], len(group) - 1
-    return replace(first, element=f"{first.element} and {others} more") if others else first
+    return tuple(map(as_one, groups.values()))
 
 
 def _unknown(
@@ -167,16 +155,8 @@ def _dropped(element: UrdfElement, name: str, reason: str) -> Finding:
 VERSION = "1.0"
 """The only version that Jazzy's urdfdom accepts."""
 VECTORS = ("xyz", "rpy", "size", "scale", "rgba", QUATERNION)
-NUMBERS = {
-    "mass": ("value",),
-    "inertia": ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"),
-    "cylinder": ("radius", "length"),
-    "sphere": ("radius",),
-    "limit": ("lower", "upper", "effort", "velocity"),
-    "dynamics": ("damping", "friction"),
-    "mimic": ("multiplier", "offset"),
-    "safety_controller": ("soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"),
-}
+_OF_NUMBERS = ("mass", "inertia", "cylinder", "sphere", "limit", "dynamics", "safety_controller")
+NUMBERS = {**{tag: _ATTRIBUTES[tag] for tag in _OF_NUMBERS}, "mimic": ("multiplier", "offset")}
 NOT_ACCEPTED = "urdfdom, which a real robot_state_publisher uses, does not accept that"
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _TAG = re.compile(r"""<([A-Za-z]\w*)((?:\s+[\w:.-]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))+)\s*/?>""")

@@ -8,7 +8,7 @@ from arm_description.mesh.data import Color
 from arm_description.urdf.description import Description, RobotDescription, as_description
 from arm_description.urdf.element import UrdfElement
 from arm_description.urdf.xml_document import finite_number
-from arm_gazebo.build_report import BuildReport, Finding
+from arm_gazebo.build_report import BuildOutcome, BuildReport, Finding, as_one
 from arm_node.frozen import frozen
 from arm_node.names import listing
 
@@ -162,13 +162,10 @@ class _TagReader:
         self._links: dict[str, LinkTags] = {}
         self._self_collide = False
         self._report = BuildReport()
-        self._left_out: dict[str, list[int]] = {}
+        self._left_out: dict[str, list[Finding]] = {}
 
     def tags(self) -> GazeboTags:
-        for tag, lines in self._left_out.items():
-            reason = REASONS.get(tag, "it is not simulated")
-            others = f" and {len(lines) - 1} more" if len(lines) > 1 else ""
-            self._report.drop(f"<gazebo> <{tag}>{others}", reason, lines[0])
+        self._report.add(*map(as_one, self._left_out.values()))
         return GazeboTags(self._links, self._self_collide, self._report.findings)
 
     def read(self, gazebo: UrdfElement) -> None:
@@ -214,7 +211,9 @@ class _TagReader:
                 element.line,
             )
         elif element.tag not in IGNORED_TAGS:
-            self._left_out.setdefault(element.tag, []).append(element.line)
+            name, reason = element.tag, REASONS.get(element.tag, "it is not simulated")
+            finding = Finding(BuildOutcome.DROPPED, f"<gazebo> <{name}>", reason, element.line)
+            self._left_out.setdefault(name, []).append(finding)
         return tags
 
     def _leave_out_plugin(self, element: UrdfElement) -> None:

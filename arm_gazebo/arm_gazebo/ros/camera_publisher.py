@@ -172,14 +172,13 @@ def info_message(sensor: CameraSensor) -> CameraInfo:
     half a pixel less.
     """
     lens = sensor.lens
-    matrix = np.array([[lens.fx, lens.skew, lens.cx], [0.0, lens.fy, lens.cy], [0.0, 0.0, 1.0]])
     message = CameraInfo(height=sensor.height, width=sensor.width, distortion_model="plumb_bob")
     message.header.frame_id = sensor.optical_frame
     message.d = list(lens.distortion)
-    message.k = matrix.ravel()
+    message.k = lens.matrix.ravel()
     message.r = np.eye(3).ravel()
     # Of the rectified image.
-    message.p = np.column_stack([matrix, np.zeros(3)]).ravel()
+    message.p = np.column_stack([lens.matrix, np.zeros(3)]).ravel()
     return message
 
 

@@ -139,18 +139,11 @@ def _in_namespace(camera: CameraSensor, namespace: str) -> CameraSensor:
     """Return a camera whose name and relative topics are unique among all robots."""
     if not namespace:
         return camera
-
-    def below(topics: Sequence[str]) -> tuple[str, ...]:
-        return tuple(_below(namespace, topic) for topic in topics)
-
-    return replace(
-        camera,
-        name=f"{namespace}_{camera.name}",
-        image_topics=below(camera.image_topics),
-        info_topics=below(camera.info_topics),
-        depth_topics=below(camera.depth_topics),
-        points_topics=below(camera.points_topics),
-    )
+    topics = {
+        kind: tuple(_below(namespace, topic) for topic in getattr(camera, kind))
+        for kind in ("image_topics", "info_topics", "depth_topics", "points_topics")
+    }
+    return replace(camera, name=f"{namespace}_{camera.name}", **topics)
 
 
 def _below(namespace: str, topic: str) -> str:

@@ -13,7 +13,7 @@ from arm_description.errors import XmlError
 from arm_description.mesh.data import Color
 from arm_description.transforms import rotation_from_quaternion, rotation_from_rpy, transform
 from arm_description.urdf.xml_document import XmlElement
-from arm_gazebo.build_report import BuildOutcome, Finding
+from arm_gazebo.build_report import BuildOutcome, Finding, as_one
 from arm_gazebo.errors import WorldError
 from arm_node.frozen import frozen
 from arm_node.user_file import read_text
@@ -274,26 +274,20 @@ class Unread:
     @property
     def label(self) -> str:
         """Its name in messages."""
-        element = self.element
-        return (
-            f"{self.key}='{element.attribute(self.key)}' of {element.label}"
-            if self.key
-            else (element.label)
-        )
+        name = self.element.label
+        return f"{self.key}='{self.element.attribute(self.key)}' of {name}" if self.key else name
 
 
 def unread_findings(read: Iterable[SdfElement]) -> Iterator[Finding]:
-    """Yield a finding for each kind of unread element and attribute in each file."""
-    alike: dict[tuple[Path, str, str, BuildOutcome], list[Unread]] = {}
-    for root in read:
-        for unread in root.unread():
-            kind = (unread.element.source, unread.element.tag, unread.key, unread.outcome)
-            alike.setdefault(kind, []).append(unread)
-    for group in alike.values():
-        first, others = group[0], len(group) - 1
-        more = f" and {others} more" if others else ""
-        what = f"{first.label} in {first.element.file_label}{more}"
-        yield Finding(first.outcome, what, first.reason, first.element.line, len(group))
+    """Return a finding for each kind of unread element and attribute in each file."""
+    alike: dict[tuple[Path, str, str, BuildOutcome], list[Finding]] = {}
+    for unread in (each for root in read for each in root.unread()):
+        element = unread.element
+        kind = (element.source, element.tag, unread.key, unread.outcome)
+        what = f"{unread.label} in {element.file_label}"
+        finding = Finding(unread.outcome, what, unread.reason, element.line)
+        alike.setdefault(kind, []).append(finding)
+    return map(as_one, alike.values())
 
 
 def _unread_outcome(element: SdfElement) -> tuple[BuildOutcome, str] | None:

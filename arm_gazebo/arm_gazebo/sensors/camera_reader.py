@@ -5,6 +5,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Container, Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +32,6 @@ from arm_gazebo.sensors.tags import (
     SensorTags,
     unique_names,
 )
-from arm_node.frozen import frozen
 
 logger = logging.getLogger(__name__)
 
@@ -91,34 +91,25 @@ def _camera_tags(document: RobotDescription) -> Iterator[SensorTags]:
             )
 
 
-@frozen
-class _Topics:
-    """The topics of a camera, which depend on its type.
+def _topics(tags: SensorTags, taken: Container[str]) -> dict[str, Any]:
+    """Return the topics of a camera by the attribute of `CameraSensor`; its type has certain ones.
 
     They are below `<topic>` with Gazebo's names. A tag for one topic, such as `<image_topic>`,
     overrides its name; it replaces the remapping in a configuration of Gazebo's bridge.
     """
-
-    image_topics: tuple[str, ...] = ()
-    info_topics: tuple[str, ...] = ()
-    depth_topics: tuple[str, ...] = ()
-    points_topics: tuple[str, ...] = ()
-
-    @classmethod
-    def of(cls, tags: SensorTags, taken: Container[str]) -> "_Topics":
-        topics, infos = tags.own_topics(), tags.topics("camera_info_topic")
-        if tags.type == "rgbd_camera":
-            return cls(
-                image_topics=tags.topics("image_topic") or _below(topics, "image"),
-                info_topics=infos or _below(topics, "camera_info"),
-                depth_topics=tags.topics("depth_image_topic") or _below(topics, "depth_image"),
-                points_topics=tags.topics("points_topic") or _below(topics, "points"),
-            )
-        infos = infos or _default_info_topics(topics, taken)
-        if tags.type == "depth_camera":
-            points = tags.topics("points_topic") or _below(topics, "points")
-            return cls(info_topics=infos, depth_topics=topics, points_topics=points)
-        return cls(image_topics=topics, info_topics=infos)
+    topics, infos = tags.own_topics(), tags.topics("camera_info_topic")
+    if tags.type == "rgbd_camera":
+        return {
+            "image_topics": tags.topics("image_topic") or _below(topics, "image"),
+            "info_topics": infos or _below(topics, "camera_info"),
+            "depth_topics": tags.topics("depth_image_topic") or _below(topics, "depth_image"),
+            "points_topics": tags.topics("points_topic") or _below(topics, "points"),
+        }
+    infos = infos or _default_info_topics(topics, taken)
+    if tags.type == "depth_camera":
+        points = tags.topics("points_topic") or _below(topics, "points")
+        return {"info_topics": infos, "depth_topics": topics, "points_topics": points}
+    return {"image_topics": topics, "info_topics": infos}
 
 
 def _below(topics: tuple[str, ...], name: str) -> tuple[str, ...]:
@@ -133,7 +124,7 @@ def _read_camera(
     if tags.type == "camera":
         tags.choice("image/format", FORMATS)
     noisy = noise_type(tags, "noise") != "none"
-    topics = _Topics.of(tags, taken)
+    topics = _topics(tags, taken)
     numbers = tags.pose()
     pose = Pose((numbers[0], numbers[1], numbers[2]), (numbers[3], numbers[4], numbers[5]))
     frames = _CameraFrames(document, tags.reference)
@@ -159,15 +150,12 @@ def _read_camera(
         rate_hz=tags.rate_hz() or DEFAULT_RATE_HZ,
         noise_mean=_noise(tags, "mean", -1, "from -1 to 1") if noisy else 0.0,
         noise_stddev=_noise(tags, "stddev", 0, "from 0 to 1") if noisy else 0.0,
-        image_topics=topics.image_topics,
-        info_topics=topics.info_topics,
-        depth_topics=topics.depth_topics,
-        points_topics=topics.points_topics,
+        **topics,
         xyz=pose.xyz,
         rpy=pose.rpy,
         optics_in_frame=SAME_FRAME
         # A frame that is not fixed to the link counts as the optical one.
-        if optics is None or not topics.points_topics
+        if optics is None or "points_topics" not in topics
         else tuple(optics[:3].ravel().tolist()),
     )
     return _with_lens(camera, tags)
