@@ -12,6 +12,17 @@ from arm_node.process import EXIT_OK, NodeProcess
 from arm_node.task import Task, run_task
 from arm_node.workarounds.exit_pause import end_process
 
+MANAGER, SWITCH, SERVICE_CALL = (
+    "controller-manager-timeout",
+    "switch-timeout",
+    "service-call-timeout",
+)
+_TIMEOUTS = {
+    MANAGER: (0.0, "for the controller manager; 0 waits for ever"),
+    SWITCH: (5.0, "for a switch, as in a paused simulation; 0 means 1 s"),
+    SERVICE_CALL: (10.0, "for an answer before asking again"),
+}
+
 
 def absolute_name(manager: str, namespace: str) -> str:
     """Return the manager's absolute name; a relative one belongs to a namespace.
@@ -24,8 +35,7 @@ def absolute_name(manager: str, namespace: str) -> str:
     return f"/{prefix}/{manager}" if prefix else f"/{manager}"
 
 
-def add_controller_manager(parser: argparse.ArgumentParser) -> None:
-    """Add the option for the controller manager."""
+def _add_controller_manager(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-c",
         "--controller-manager",
@@ -35,38 +45,13 @@ def add_controller_manager(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_controller_manager_timeout(parser: argparse.ArgumentParser) -> None:
-    """Add the timeout for the controller manager."""
-    _add_timeout(
-        parser, "--controller-manager-timeout", 0.0, "for the controller manager; 0 waits for ever"
-    )
-
-
-def add_switch_timeout(parser: argparse.ArgumentParser) -> None:
-    """Add the timeout of a switch."""
-    _add_timeout(
-        parser, "--switch-timeout", 5.0, "for a switch, as in a paused simulation; 0 means 1 s"
-    )
-
-
-def add_service_call_timeout(parser: argparse.ArgumentParser) -> None:
-    """Add the timeout of a service call."""
-    _add_timeout(
-        parser, "--service-call-timeout", 10.0, "for an answer before asking again", positive=True
-    )
-
-
-def _add_timeout(
-    parser: argparse.ArgumentParser,
-    flag: str,
-    default_s: float,
-    meaning: str,
-    *,
-    positive: bool = False,
-) -> None:
+def _add_timeout(parser: argparse.ArgumentParser, name: str) -> None:
+    """Add one of the timeouts; what is parsed has its name with its unit."""
+    default_s, meaning = _TIMEOUTS[name]
     parser.add_argument(
-        flag,
-        type=_positive_seconds if positive else _seconds,
+        f"--{name}",
+        dest=f"{name.replace('-', '_')}_s",
+        type=_positive_seconds if name == SERVICE_CALL else _seconds,
         default=default_s,
         metavar="SECONDS",
         help=f"how long to wait {meaning} (default: %(default)s)",
@@ -113,14 +98,11 @@ def parse_unspawner_options(arguments: Sequence[str]) -> UnspawnerOptions:
         prog="unspawner", description="Deactivate and unload controllers.", allow_abbrev=False
     )
     parser.add_argument("names", nargs="+", metavar="NAME", help="controllers, in this order")
-    add_controller_manager(parser)
-    add_switch_timeout(parser)
+    _add_controller_manager(parser)
+    _add_timeout(parser, SWITCH)
     options = parser.parse_intermixed_args(arguments)
-    return UnspawnerOptions(
-        names=tuple(options.names),
-        controller_manager=options.controller_manager,
-        switch_timeout_s=options.switch_timeout,
-    )
+    options.names = tuple(options.names)
+    return UnspawnerOptions(**vars(options))
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,8 +130,8 @@ def parse_hardware_spawner_options(arguments: Sequence[str]) -> HardwareSpawnerO
         allow_abbrev=False,
     )
     parser.add_argument("names", nargs="+", metavar="NAME", help="components, in this order")
-    add_controller_manager(parser)
-    add_controller_manager_timeout(parser)
+    _add_controller_manager(parser)
+    _add_timeout(parser, MANAGER)
     target = parser.add_mutually_exclusive_group(required=True)
     for flag, state, meaning in (
         ("--activate", LifecycleState.ACTIVE, "configure and activate them"),
@@ -157,12 +139,8 @@ def parse_hardware_spawner_options(arguments: Sequence[str]) -> HardwareSpawnerO
     ):
         target.add_argument(flag, action="store_const", const=state, dest="target", help=meaning)
     options = parser.parse_intermixed_args(arguments)
-    return HardwareSpawnerOptions(
-        names=tuple(options.names),
-        target=options.target,
-        controller_manager=options.controller_manager,
-        controller_manager_timeout_s=options.controller_manager_timeout,
-    )
+    options.names = tuple(options.names)
+    return HardwareSpawnerOptions(**vars(options))
 
 
 _ROS_ARGUMENTS = "--controller-ros-args"
@@ -244,9 +222,9 @@ def parse_spawner_options(
         controller_manager=options.controller_manager,
         namespace=options.namespace,
         unload_on_kill=options.unload_on_kill,
-        controller_manager_timeout_s=options.controller_manager_timeout,
-        switch_timeout_s=options.switch_timeout,
-        service_call_timeout_s=options.service_call_timeout,
+        controller_manager_timeout_s=options.controller_manager_timeout_s,
+        switch_timeout_s=options.switch_timeout_s,
+        service_call_timeout_s=options.service_call_timeout_s,
         activate_as_group=options.activate_as_group,
         switch_asap=options.switch_asap,
     )
@@ -317,7 +295,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "names", nargs="*", default=[], metavar="NAME", help="controllers to start, in this order"
     )
-    add_controller_manager(parser)
+    _add_controller_manager(parser)
     parser.add_argument(
         "-n",
         "--namespace",
@@ -330,9 +308,8 @@ def _parser() -> argparse.ArgumentParser:
         action="store_true",
         help="keep running; deactivate and unload the controllers at the end",
     )
-    add_controller_manager_timeout(parser)
-    add_switch_timeout(parser)
-    add_service_call_timeout(parser)
+    for name in _TIMEOUTS:
+        _add_timeout(parser, name)
     parser.add_argument(
         "--activate-as-group",
         action="store_true",

@@ -1,8 +1,6 @@
 """The ROS half of the gripper controllers: the action ~/gripper_cmd."""
 
-from abc import ABC
-from collections.abc import Callable
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
 from typing import Any, ClassVar
 
 from control_msgs.action import GripperCommand, ParallelGripperCommand
@@ -15,90 +13,80 @@ from arm_control.controllers.ros_adapter import ControllerAdapter
 from arm_control.loop.ros_executor_bridge import run_on_executor
 
 
-@dataclass(frozen=True, slots=True)
-class _GripperActionFormat:
-    """A gripper action type and the conversion of its messages.
+class _GripperAction(ControllerAction[GripperController[Any], GripperResult], ABC):
+    """The action of a gripper controller; without feedback, as in ros2_controllers.
 
     Attributes:
         action_type: class of the action.
-        request: makes the controller's request from a goal's id and message.
-        result: makes the result message from a result and the joint's name.
     """
 
-    action_type: type[Any]
-    request: Callable[[bytes, Any], GripperRequest]
-    result: Callable[[GripperResult, str], Any]
-
-
-def gripper_command_request(goal_id: bytes, goal: GripperCommand.Goal) -> GripperRequest:
-    """Return the request of a goal with one position and one effort."""
-    return GripperRequest(goal_id, (goal.command.position,), (goal.command.max_effort,))
-
-
-def gripper_command_result(result: GripperResult, joint: str) -> GripperCommand.Result:
-    """Return the result message of the older action."""
-    message = GripperCommand.Result(stalled=result.stalled, reached_goal=result.reached_goal)
-    if result.state is not None:
-        message.position, message.effort = result.state.position, result.state.effort
-    return message
-
-
-def parallel_gripper_request(goal_id: bytes, goal: ParallelGripperCommand.Goal) -> GripperRequest:
-    """Return the request of a goal with a joint state, of which only the position is required."""
-    command = goal.command
-    return GripperRequest(goal_id, command.position, command.effort, command.velocity)
-
-
-def parallel_gripper_result(result: GripperResult, joint: str) -> ParallelGripperCommand.Result:
-    """Return the result message of the newer action."""
-    message = ParallelGripperCommand.Result(
-        stalled=result.stalled, reached_goal=result.reached_goal
-    )
-    if result.state is not None:
-        message.state.name = [joint]
-        message.state.position = [result.state.position]
-        message.state.velocity = [result.state.velocity]
-        message.state.effort = [result.state.effort]
-    return message
-
-
-GRIPPER_COMMAND = _GripperActionFormat(
-    GripperCommand, gripper_command_request, gripper_command_result
-)
-PARALLEL_GRIPPER_COMMAND = _GripperActionFormat(
-    ParallelGripperCommand, parallel_gripper_request, parallel_gripper_result
-)
-
-
-class _GripperAction(ControllerAction[GripperController[Any], GripperResult]):
-    """The action of a gripper controller; without feedback, as in ros2_controllers."""
+    action_type: ClassVar[type[Any]]
 
     def __init__(self, adapter: "_GripperAdapter", joint: str) -> None:
-        self._action_format = adapter.action_format
         self._joint = joint
-        super().__init__(adapter, adapter.action_format.action_type, "~/gripper_cmd")
+        super().__init__(adapter, self.action_type, "~/gripper_cmd")
+
+    @abstractmethod
+    def request(self, goal_id: bytes, goal: Any) -> GripperRequest:
+        """Return the controller's request from a goal's id and message."""
 
     def accepts(self, goal: Any) -> bool:
         """Return whether a goal is acceptable."""
-        return not self.controller.check_goal(self._action_format.request(b"", goal))
+        return not self.controller.check_goal(self.request(b"", goal))
 
     def submit(self, goal_id: bytes, goal: Any) -> GripperResult | None:
         """Start a goal."""
-        return self.controller.submit_goal(self._action_format.request(goal_id, goal))
+        return self.controller.submit_goal(self.request(goal_id, goal))
 
-    def result_message(self, result: GripperResult) -> Any:
+
+class GripperCommandAction(_GripperAction):
+    """The older action: a goal has one position and one effort."""
+
+    action_type = GripperCommand
+
+    def request(self, goal_id: bytes, goal: GripperCommand.Goal) -> GripperRequest:
+        """Return the controller's request."""
+        return GripperRequest(goal_id, (goal.command.position,), (goal.command.max_effort,))
+
+    def result_message(self, result: GripperResult) -> GripperCommand.Result:
         """Return the result message of a goal."""
-        return self._action_format.result(result, self._joint)
+        message = GripperCommand.Result(stalled=result.stalled, reached_goal=result.reached_goal)
+        if result.state is not None:
+            message.position, message.effort = result.state.position, result.state.effort
+        return message
+
+
+class ParallelGripperAction(_GripperAction):
+    """The newer action: a goal has a joint state, of which only the position is required."""
+
+    action_type = ParallelGripperCommand
+
+    def request(self, goal_id: bytes, goal: ParallelGripperCommand.Goal) -> GripperRequest:
+        """Return the controller's request."""
+        command = goal.command
+        return GripperRequest(goal_id, command.position, command.effort, command.velocity)
+
+    def result_message(self, result: GripperResult) -> ParallelGripperCommand.Result:
+        """Return the result message of a goal."""
+        message = ParallelGripperCommand.Result(
+            stalled=result.stalled, reached_goal=result.reached_goal
+        )
+        if result.state is not None:
+            message.state.name = [self._joint]
+            message.state.position = [result.state.position]
+            message.state.velocity = [result.state.velocity]
+            message.state.effort = [result.state.effort]
+        return message
 
 
 class _GripperAdapter(ControllerAdapter[GripperController[Any]], ABC):
     """Offers the action from the first activation on, and is the controller's sink.
 
     Attributes:
-        action_format: the action's type and the conversion of its messages.
+        action: class of the action.
     """
 
-    action_format: ClassVar[_GripperActionFormat]
+    action: ClassVar[type[_GripperAction]]
     _action: _GripperAction | None = None
 
     def on_configure(self, parameters: GripperParameters) -> None:
@@ -132,7 +120,7 @@ class _GripperAdapter(ControllerAdapter[GripperController[Any]], ABC):
 
     def _offer(self) -> None:
         if self._action is None and self.controller.sink is self:
-            self._action = _GripperAction(self, self._joint)
+            self._action = self.action(self, self._joint)
 
     def _withdraw(self) -> None:
         if self._action is not None:
@@ -143,10 +131,10 @@ class _GripperAdapter(ControllerAdapter[GripperController[Any]], ABC):
 class GripperCommandAdapter(_GripperAdapter):
     """Offers control_msgs/action/GripperCommand."""
 
-    action_format = GRIPPER_COMMAND
+    action = GripperCommandAction
 
 
 class ParallelGripperAdapter(_GripperAdapter):
     """Offers control_msgs/action/ParallelGripperCommand."""
 
-    action_format = PARALLEL_GRIPPER_COMMAND
+    action = ParallelGripperAction
