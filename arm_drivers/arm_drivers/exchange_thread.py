@@ -33,6 +33,7 @@ class ExchangeThread:
     Attributes:
         failure: why the arm is no longer in use; empty while it works.
         exchanges: exchanges so far.
+        latest: the last good values of each joint.
         missed: shape (n,), how often each joint did not report.
     """
 
@@ -76,14 +77,9 @@ class ExchangeThread:
         self._missed_in_a_row = np.zeros(count, int)
         self._reported_s = np.full(count, goals.now_s())
         unknown = np.full(count, np.nan)
-        self._latest = ArmReading(unknown, unknown, unknown)
+        self.latest = ArmReading(unknown, unknown, unknown)
         self._read_all()
         self._thread = threading.Thread(target=self._run, name="arm exchange", daemon=True)
-
-    @property
-    def latest(self) -> ArmReading:
-        """The last good values of each joint."""
-        return self._latest
 
     def start(self) -> None:
         """Start the thread."""
@@ -139,7 +135,7 @@ class ExchangeThread:
                     self._logger.warning(
                         "no command for %g s: the arm holds where it is", self._watchdog_s
                     )
-                    self._goals.hold(self._latest.positions)
+                    self._goals.hold(self.latest.positions)
                 self.exchange()
             except DriverError as error:
                 self._fail(str(error))
@@ -155,8 +151,8 @@ class ExchangeThread:
 
     def _engage(self) -> None:
         self._read_all()
-        self._device.engage(self._latest.positions)
-        self._goals.hold(self._latest.positions)
+        self._device.engage(self.latest.positions)
+        self._goals.hold(self.latest.positions)
         self._engaged = True
 
     def _read_all(self) -> None:
@@ -172,7 +168,7 @@ class ExchangeThread:
 
     def _hold(self) -> None:
         if self._engaged and not self.failure:
-            self._device.exchange(self._latest.positions)
+            self._device.exchange(self.latest.positions)
         self._engaged = False
 
     def _release(self) -> None:
@@ -190,7 +186,7 @@ class ExchangeThread:
         if (self._missed_in_a_row >= self._max_missed).any():
             self._fail(self._describe_missing(self._missed_in_a_row >= self._max_missed))
         elif self._alarmed >= self._max_missed:
-            self._fail("; ".join(self._latest.alarms))
+            self._fail("; ".join(self.latest.alarms))
         elif self._missed_in_a_row.any() and self._reminder.permits():
             self._logger.warning(
                 "%s; the last good values are kept",
@@ -200,7 +196,7 @@ class ExchangeThread:
             self._watch_for_push(goals)
 
     def _merge(self, reading: ArmReading) -> None:
-        latest = self._latest
+        latest = self.latest
         now_s = self._goals.now_s()
         # Damage that no checksum shows is a jump that no joint can make in the time.
         reach = self._device.max_speed * (now_s - self._reported_s) + JUMP_RAD
@@ -211,7 +207,7 @@ class ExchangeThread:
         self.missed = self.missed + ~reported
         self._alarmed = self._alarmed + 1 if reading.alarms else 0
         # One object replaces the other, so that readers need no lock.
-        self._latest = ArmReading(
+        self.latest = ArmReading(
             np.where(reported, reading.positions, latest.positions),
             np.where(reported, reading.velocities, latest.velocities),
             np.where(reported, reading.efforts, latest.efforts),
@@ -221,7 +217,7 @@ class ExchangeThread:
     def _fail(self, sentence: str) -> None:
         if self._engaged:
             try:
-                self._device.exchange(self._latest.positions)
+                self._device.exchange(self.latest.positions)
             except DriverError:
                 # The port has gone: the arm holds its last goal, at most one exchange away.
                 self._logger.debug("the arm could not be told to hold")
@@ -229,7 +225,7 @@ class ExchangeThread:
         self.failure = sentence
 
     def _watch_for_push(self, goals: NDArray[np.float64]) -> None:
-        off = np.abs(goals - self._latest.positions)
+        off = np.abs(goals - self.latest.positions)
         place = int(np.argmax(off))
         name = self._device.names[place] if self._goals.rests and off[place] > PUSHED_RAD else ""
         if name and name != self._pushed:

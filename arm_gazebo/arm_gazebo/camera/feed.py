@@ -27,6 +27,9 @@ class CameraFeed(StateFeed):
 
     Call `start` and `set_model`, then `publish_due` at each tick and `supervise` about once a
     second, and finally `close`.
+
+    Attributes:
+        schedule: when the next pictures are due; it is part of the state of a run.
     """
 
     def __init__(
@@ -55,7 +58,7 @@ class CameraFeed(StateFeed):
         self._cameras = tuple(cameras)
         settings = CameraSettings(self._cameras, seed, render_backend)
         super().__init__(make_process(settings, ros_arguments))
-        self._schedule = FrameSchedule([camera.rate_hz for camera in self._cameras])
+        self.schedule = FrameSchedule([camera.rate_hz for camera in self._cameras])
         self._clock = clock
         self._sent_s = [-math.inf] * len(self._cameras)
         self._sent = [-1] * len(self._cameras)
@@ -72,17 +75,12 @@ class CameraFeed(StateFeed):
             camera_id(model, camera)
         return super().prepare(model)
 
-    @property
-    def schedule(self) -> FrameSchedule:
-        """When the next readings or pictures are due; it is part of the state of a run."""
-        return self._schedule
-
     def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
         """Send the state if a camera frame is due at this tick. Loop thread only; never waits."""
-        if self._schedule.nothing_due(time_s):
+        if self.schedule.nothing_due(time_s):
             return
         now_s = self._clock()
-        due = self._schedule.take_due(time_s)
+        due = self.schedule.take_due(time_s)
         frames = tuple(frame for frame in due if self._may_send(frame, now_s))
         if not (frames and self.send(time_s, frames, data)):
             frames = ()
@@ -101,7 +99,7 @@ class CameraFeed(StateFeed):
         return tuple(
             StreamCount(camera.name, "camera", camera.rate_hz, due, done.rendered, done.dropped)
             for camera, due, done in zip(
-                self._cameras, self._schedule.serials, progress, strict=True
+                self._cameras, self.schedule.serials, progress, strict=True
             )
         )
 

@@ -148,6 +148,9 @@ class CameraProcess:
 
     A process that died is restarted after a delay that doubles each time. If it crashed while it
     rendered with OpenGL, the next one starts at once and does not use that backend.
+
+    Attributes:
+        settings: those of the next process.
     """
 
     def __init__(
@@ -159,7 +162,7 @@ class CameraProcess:
         spawn: Spawn = subprocess.Popen,
     ) -> None:
         """Prepare without starting a process; backends that fail join `settings.excluded`."""
-        self._settings = settings
+        self.settings = settings
         self._ros_arguments = tuple(ros_arguments)
         self._environ = environ
         self._clock = clock
@@ -174,20 +177,15 @@ class CameraProcess:
         """Process id of the child that runs or has just died; None if there is none."""
         return self._child.pid
 
-    @property
-    def settings(self) -> CameraSettings:
-        """The settings of the next process."""
-        return self._settings
-
     def start(self, socket_fd: int) -> None:
         """Start a process that inherits this socket; see `WorkerProcess.start` about the thread."""
         arguments = [
-            *("--settings", self._settings.to_json()),
+            *("--settings", self.settings.to_json()),
             *(("--ros-args", *self._ros_arguments) if self._ros_arguments else ()),
         ]
         self._backend = None
         self._started_s = self._clock()
-        frame_bytes = sum(camera.frame_bytes for camera in self._settings.cameras)
+        frame_bytes = sum(camera.frame_bytes for camera in self.settings.cameras)
         environment = camera_environment(self._environ, frame_bytes)
         try:
             self._child.start(socket_fd, arguments, environment)
@@ -218,7 +216,7 @@ class CameraProcess:
         how = describe_exit(code)
         if self._backend_failed(code):
             failed = str(self._backend)
-            self._settings = replace(self._settings, excluded=(*self._settings.excluded, failed))
+            self.settings = replace(self.settings, excluded=(*self.settings.excluded, failed))
             self._start_again_s = now
             logger.warning(
                 "the camera process ended %s while it used %s; the next one runs without %s",

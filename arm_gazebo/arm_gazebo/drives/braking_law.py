@@ -228,7 +228,7 @@ def slow_joints(
         return
     dofs = np.array([joint.dof_address for joint in joints], dtype=np.intp)
     law = BrakingLaw(model, tuning, dofs)
-    efforts = np.minimum(tuning.efforts, 1e9)
+    efforts = np.minimum(tuning.efforts, UNLIMITED)
     data = mujoco.MjData(model)
     times, loads = np.zeros((POSES, len(joints))), np.zeros((len(joints),) * 2)
     for dof, rotor in zip(dofs.tolist(), tuning.armature.tolist(), strict=True):

@@ -62,6 +62,7 @@ class Servo:
         timing: control period and physics step.
         proportional_gain: see `DrivenJoint`.
         law: the bounds on braking, by the pose.
+        tuning: gains and bounds of the joints.
     """
 
     law: BrakingLaw
@@ -123,7 +124,7 @@ class Servo:
 
     def retune(self, tuning: ServoTuning) -> None:
         """Continue with other bounds of the same gains, because the gravity has changed."""
-        self._tuning = tuning
+        self.tuning = tuning
         self._rebound(tuning)
         # The efforts that hold a resting joint are others now.
         self._wake()
@@ -144,7 +145,7 @@ class Servo:
         tuning: ServoTuning,
     ) -> None:
         """Store views of MuJoCo's arrays: looking up an attribute costs as much as a sum."""
-        self._model, self._data, self._tuning = model, data, tuning
+        self._model, self._data, self.tuning = model, data, tuning
         self._spread = tuning.coupling / self._period_s
         self._ratios = tuning.follower_ratios()
         self._friction, self._drag = resistance(model, tuning.coupling)
@@ -168,11 +169,6 @@ class Servo:
     def joints(self) -> tuple[RobotJoint, ...]:
         """The driven joints, in the order of the indices that the methods take."""
         return tuple(driven.joint for driven in self._joints)
-
-    @property
-    def tuning(self) -> ServoTuning:
-        """Gains and bounds of the joints."""
-        return self._tuning
 
     def mode(self, index: int) -> DriveMode:
         """Return how a joint is driven."""
@@ -204,7 +200,7 @@ class Servo:
 
     def _share(self, index: int, limit: float) -> float:
         """Return the fraction of the normal braking deceleration that an effort limit allows."""
-        return min(1.0, EFFORT_SHARE * limit / self._tuning.braking_efforts[index])
+        return min(1.0, EFFORT_SHARE * limit / self.tuning.braking_efforts[index])
 
     def stopping_point(self, index: int) -> float:
         """Return where a joint will stop without a new command, in rad or m."""
@@ -377,7 +373,7 @@ class Servo:
         self._pack(self._ctrl, 0, *rates)
 
     def _set_gains(self, index: int, mode: DriveMode) -> None:
-        tuning, model = self._tuning, self._model
+        tuning, model = self.tuning, self._model
         actuator = self._joints[index].joint.actuator
         gain, stiffness, damping = 0.0, 0.0, 0.0
         rotor = 0.0
@@ -411,7 +407,7 @@ class Servo:
 
     def _set_friction_solver(self, index: int) -> None:
         """Let friction stick unless the drive holds the joint and can overcome it."""
-        model, tuning = self._model, self._tuning
+        model, tuning = self._model, self.tuning
         driven = self._joints[index]
         dofs = (driven.joint.dof_address, *(follower for follower, _ in tuning.gears[index]))
         friction = float(np.abs(tuning.coupling[:, index]).dot(model.dof_frictionloss))

@@ -47,6 +47,8 @@ class StateFeed:
 
     Attributes:
         progress: what the process last reported about its frames, one for each camera; any thread.
+        version: number of the model; states of an earlier one may have been discarded.
+        flowing: whether the process has received the model and so can use states.
     """
 
     def __init__(self, reader: _StateReader) -> None:
@@ -56,21 +58,11 @@ class StateFeed:
         self._lock = threading.Lock()
         self.progress: tuple[CameraProgress, ...] = ()
         self._tried: list[str] = []
-        self._version = 0
+        self.version = 0
         self._model_file: int | None = None
         # While this is set the child has the model, and the loop thread sends its states.
-        self._flowing = False
+        self.flowing = False
         self._closed = False
-
-    @property
-    def version(self) -> int:
-        """Number of the model; states of an earlier one may have been discarded."""
-        return self._version
-
-    @property
-    def flowing(self) -> bool:
-        """Whether the process has received the model and so can use states."""
-        return self._flowing
 
     def start(self, model: mujoco.MjModel | None = None) -> None:
         """Start the process, and show a model. Start it early: it needs none before `set_model`.
@@ -113,11 +105,11 @@ class StateFeed:
             if self._closed:
                 os.close(file)
                 return
-            self._flowing = False
+            self.flowing = False
             if self._model_file is not None:
                 os.close(self._model_file)
             self._model_file = file
-            self._version += 1
+            self.version += 1
             self._offer_model()
 
     def send(self, time_s: float, frames: tuple[FrameDue, ...], data: mujoco.MjData) -> bool:
@@ -125,7 +117,7 @@ class StateFeed:
 
         Never waits. Loop thread only, and only while `flowing`.
         """
-        return self._channel.send_snapshot(CameraSnapshot.of(data, time_s, self._version, frames))
+        return self._channel.send_snapshot(CameraSnapshot.of(data, time_s, self.version, frames))
 
     def supervise(self) -> None:
         """Restart the process if it has died and should run. Call it about once a second.
@@ -139,12 +131,12 @@ class StateFeed:
             self._hear()
             backends, self._tried = self._tried, []
             if self._reader.start_again_due(backends):
-                self._flowing = False
+                self.flowing = False
                 self.progress = ()
                 # Messages that the dead process left unread would arrive before the model.
                 self._channel.discard_unread()
                 self._reader.start(self._channel.remote_fd)
-            if not self._flowing:
+            if not self.flowing:
                 self._offer_model()
 
     def hear(self, timeout_s: float) -> None:
@@ -157,7 +149,7 @@ class StateFeed:
     def close(self) -> None:
         """End the process and wait some seconds at most for it. Idempotent; any thread."""
         with self._lock:
-            self._flowing = False
+            self.flowing = False
             if self._closed:
                 return
             self._closed = True
@@ -176,7 +168,7 @@ class StateFeed:
     def _offer_model(self) -> None:
         if self._model_file is not None:
             self._channel.discard_unread()
-            self._flowing = self._channel.send_model(self._version, self._model_file)
+            self.flowing = self._channel.send_model(self.version, self._model_file)
 
 
 @frozen

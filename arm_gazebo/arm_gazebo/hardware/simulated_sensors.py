@@ -92,6 +92,9 @@ class SensorFeed:
         sensors: the sensors.
         sinks: one for each sensor; receives its readings.
         period_s: control period; a sensor without a rate is read once in each period.
+
+    Attributes:
+        schedule: when the next readings are due; it is part of the state of a run.
     """
 
     def __init__(
@@ -99,19 +102,14 @@ class SensorFeed:
     ) -> None:
         self._channels = tuple(zip(sensors, sinks, strict=True))
         self._rates_hz = [s.description.rate_hz or 1 / period_s for s in sensors]
-        self._schedule = FrameSchedule(self._rates_hz)
+        self.schedule = FrameSchedule(self._rates_hz)
         self._published = [0] * len(sensors)
-
-    @property
-    def schedule(self) -> FrameSchedule:
-        """When the next readings or pictures are due; it is part of the state of a run."""
-        return self._schedule
 
     def publish_due(self, time_s: float, data: mujoco.MjData) -> None:
         """Publish the readings that are due at this tick; loop thread."""
-        if self._schedule.nothing_due(time_s):
+        if self.schedule.nothing_due(time_s):
             return
-        for due in self._schedule.take_due(time_s):
+        for due in self.schedule.take_due(time_s):
             sensor, sink = self._channels[due.camera]
             if sink.wanted():
                 sink.publish(time_s, sensor.read())
@@ -124,7 +122,7 @@ class SensorFeed:
             for (sensor, _), rate_hz, due, published in zip(
                 self._channels,
                 self._rates_hz,
-                self._schedule.serials,
+                self.schedule.serials,
                 self._published,
                 strict=True,
             )

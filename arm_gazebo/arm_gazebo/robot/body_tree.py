@@ -79,11 +79,7 @@ class BodyTree:
         self._robot = robot
         self._links_carrying_mass = _links_carrying_mass(robot)
         self._geometry = geometry
-        self._step_s = options.step_s
-        self._default = options.default
-        self._free = options.free
-        self._spawn = options.spawn
-        self._weightless = options.weightless
+        self._options = options
         self._report = report
         self._bodies: dict[str, mujoco.MjsBody] = {}
         self._joint_names = {joint.name for joint in (*spec.joints, *robot.joints)}
@@ -110,12 +106,12 @@ class BodyTree:
             self._geometry.add(world, root)
             return
         body = world.add_body(
-            name=root.name, pos=self._spawn.xyz, quat=wxyz_from_rpy(self._spawn.rpy)
+            name=root.name, pos=self._options.spawn.xyz, quat=wxyz_from_rpy(self._options.spawn.rpy)
         )
         self._bodies[root.name] = body
-        if self._free:
+        if self._options.free:
             body.add_freejoint(name=self._joint_name(f"{root.name}_free"))
-        self._add_link(body, root, moves=self._free)
+        self._add_link(body, root, moves=self._options.free)
 
     def _is_world(self, link: str) -> bool:
         return link == self._robot.root == WORLD_LINK
@@ -137,14 +133,14 @@ class BodyTree:
         """Return position and quaternion of a child; the spawn pose moves the `world` link."""
         if not self._is_world(parent):
             return {"pos": np.asarray(origin.xyz), "quat": wxyz_from_rpy(origin.rpy)}
-        matrix = self._spawn.matrix() @ origin.matrix()
+        matrix = self._options.spawn.matrix() @ origin.matrix()
         quaternion = np.zeros(4)
         mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(matrix[:3, :3]).ravel())
         return {"pos": matrix[:3, 3], "quat": quaternion}
 
     def _add_link(self, body: mujoco.MjsBody, link: Link, moves: bool) -> None:
         self._geometry.add(body, link)
-        body.gravcomp = float(link.name in self._weightless)
+        body.gravcomp = float(link.name in self._options.weightless)
         inertial = link.inertial
         if inertial is not None and (inertial.mass > 0 or moves):
             inertia = repair_inertia(inertial, self._box_if_implausible(inertial, link))
@@ -181,9 +177,9 @@ class BodyTree:
                 # In MuJoCo only children of the world can have a free joint.
                 for axis, direction in zip("xyz", np.eye(3), strict=True):
                     name = self._joint_name(f"{joint.name}_{axis}")
-                    body.add_joint(self._default, name=name, type=SLIDE, axis=direction)
+                    body.add_joint(self._options.default, name=name, type=SLIDE, axis=direction)
                 name = self._joint_name(f"{joint.name}_rotation")
-                body.add_joint(self._default, name=name, type=BALL)
+                body.add_joint(self._options.default, name=name, type=BALL)
             case JointType.PLANAR:
                 # Nothing could stop it, and /tf shows the link at the joint's origin.
                 self._report.repair(
@@ -196,12 +192,12 @@ class BodyTree:
                 pass
 
     def _add_scalar(self, body: mujoco.MjsBody, joint: Joint, kind: mujoco.mjtJoint) -> None:
-        added = body.add_joint(self._default, name=joint.name, type=kind, axis=joint.axis)
+        added = body.add_joint(self._options.default, name=joint.name, type=kind, axis=joint.axis)
         # Stiff stops; two steps are the shortest time constant that MuJoCo's solver accepts.
-        added.solref_limit = [max(0.004, 2 * self._step_s), 1.0]
+        added.solref_limit = [max(0.004, 2 * self._options.step_s), 1.0]
         added.damping = np.array([joint.dynamics.damping, 0.0, 0.0])
         added.frictionloss = joint.dynamics.friction
-        solver = sticking(self._step_s)
+        solver = sticking(self._options.step_s)
         added.solref_friction, added.solimp_friction = solver.solref, solver.solimp
         bounds = self._bounds(joint)
         added.limited = mujoco.mjtLimited.mjLIMITED_FALSE

@@ -86,6 +86,9 @@ class CameraPublisher:
 
     Messages are created once, and images are rendered directly into the bytes of the message.
     Assigning a new array to `data` for each image would cost a thousand times as much.
+
+    Attributes:
+        picture: the (height, width, 3) bytes of the image message.
     """
 
     def __init__(self, node: Node, sensor: CameraSensor) -> None:
@@ -99,16 +102,11 @@ class CameraPublisher:
             node.create_publisher(CompressedImage, f"{t}/compressed", QOS)
             for t in sensor.image_topics
         ]
-        self._picture = np.frombuffer(self._image.data, np.uint8).reshape(
+        self.picture = np.frombuffer(self._image.data, np.uint8).reshape(
             sensor.height, sensor.width, 3
         )
-        self._colours = self._picture if sensor.image_topics else None
+        self._colours = self.picture if sensor.image_topics else None
         self._depth = _DepthPublisher(node, sensor) if sensor.measures_depth else None
-
-    @property
-    def picture(self) -> NDArray[np.uint8]:
-        """The (height, width, 3) bytes of the image message."""
-        return self._picture
 
     @property
     def depth(self) -> NDArray[np.float32] | None:
@@ -145,7 +143,7 @@ class CameraPublisher:
         jpegs = watched(self._jpegs)
         if jpegs:
             set_stamp(self._jpeg.header, time_s)
-            self._jpeg.data = _compress(self._picture)
+            self._jpeg.data = _compress(self.picture)
             for publisher in jpegs:
                 publisher.publish(self._jpeg)
 

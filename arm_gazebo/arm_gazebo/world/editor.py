@@ -97,6 +97,9 @@ class WorldEditor:
     Attributes:
         on_loop: runs functions on the simulation's thread.
         source: reads models to spawn.
+        entities: the present entities.
+        base: the world without changes.
+        changes: the present changes to the world; the same object until they change.
         watchers: called after each change of the world, on the editor's thread.
     """
 
@@ -114,9 +117,9 @@ class WorldEditor:
         self._feeds = tuple(feeds)
         self.source = source
         self.watchers: list[Callable[[], None]] = []
-        self._base = simulation.built
+        self.base = simulation.built
         self._built = simulation.built
-        self._changes = NOTHING
+        self.changes = NOTHING
         self._notes: Mapping[str, EntityNote] = {}
         self._take_model()
 
@@ -125,20 +128,10 @@ class WorldEditor:
         """The present model; do not modify it."""
         return self._built.model
 
-    @property
-    def changes(self) -> WorldChanges:
-        """The present changes to the world; the same object until they change."""
-        return self._changes
-
-    @property
-    def base(self) -> BuiltModel:
-        """The world without changes."""
-        return self._base
-
     def model_with(self, changes: WorldChanges) -> BuiltModel:
         """Return a new model of the present world with other changes."""
         try:
-            return changed_model(self._base, changes)
+            return changed_model(self.base, changes)
         except (WorldError, KeyError, AttributeError) as error:
             # A body that was deleted or moved may not exist in this world.
             raise RequestError(Refusal.FAILED, f"the world cannot be changed: {error}") from error
@@ -149,16 +142,11 @@ class WorldEditor:
         What is in both keeps its state; the rest starts where it was spawned. `then` is called on
         the simulation's thread, before the next tick.
         """
-        if changes is not self._changes:
+        if changes is not self.changes:
             self._change(changes, then)
         else:
             self.on_loop(then)
             self.announce()
-
-    @property
-    def entities(self) -> Entities:
-        """The present entities."""
-        return self._entities
 
     def motions(self) -> EntityMotions:
         """Return the present poses and velocities of all entities."""
@@ -174,24 +162,24 @@ class WorldEditor:
                 f"'{request.namespace}' is not a namespace; it takes letters, digits, underscores "
                 "and slashes",
             )
-        self._entities.name_for(request.name, request.allow_renaming, "entity")
+        self.entities.name_for(request.name, request.allow_renaming, "entity")
         pose = self.in_world(request.pose, request.frame)
         model = self.source.read(request.uri, request.text)
-        name = self._entities.name_for(request.name, request.allow_renaming, model.root)
+        name = self.entities.name_for(request.name, request.allow_renaming, model.root)
         for finding in shown(model.findings):
             logger.log(finding.outcome.level, "entity '%s': %s", name, finding)
-        self._change(self._changes.with_spawned(Spawned(name, model, pose)))
+        self._change(self.changes.with_spawned(Spawned(name, model, pose)))
         return name
 
     def delete(self, name: str) -> None:
         """Delete an entity. Robots are refused, because their controllers would remain."""
-        entity = self._entities.find(name)
+        entity = self.entities.find(name)
         if entity.is_robot:
             raise RequestError(
                 Refusal.FAILED,
                 f"'{name}' is a robot of the launch with controllers and cannot be deleted",
             )
-        self._change(self._changes.without(entity.roots[0]))
+        self._change(self.changes.without(entity.roots[0]))
 
     def place(self, name: str, pose: Matrix | None, frame: str, twist: np.ndarray | None) -> None:
         """Set the pose or the velocity of an entity.
@@ -203,7 +191,7 @@ class WorldEditor:
             twist: linear and angular velocity, shape (6,). None means zero velocity with a new
                 pose, and the present velocity without one.
         """
-        entity = self._entities.find(name)
+        entity = self.entities.find(name)
         if entity.free_joint:
             self._place_free(entity, pose, frame, twist)
         elif entity.is_robot:
@@ -212,11 +200,11 @@ class WorldEditor:
             raise RequestError(Refusal.FAILED, f"'{name}' is not a free body and takes no velocity")
         elif pose is not None:
             world_pose = self.in_world(pose, frame)
-            self._change(self._changes.with_moved(entity.roots[0], world_pose @ entity.origin))
+            self._change(self.changes.with_moved(entity.roots[0], world_pose @ entity.origin))
 
     def describe(self, name: str, note: EntityNote) -> None:
         """Store a client's description of an entity."""
-        entity = self._entities.find(name)
+        entity = self.entities.find(name)
         if (note.category is Category.ROBOT) != entity.is_robot:
             raise RequestError(
                 Refusal.FAILED,
@@ -235,10 +223,10 @@ class WorldEditor:
         """
         if spawned:
             then = self._with_own_properties(then)
-        if spawned and self._changes != NOTHING:
+        if spawned and self.changes != NOTHING:
             self._change(NOTHING, then)
-        elif moved and self._changes.moved:
-            self._change(replace(self._changes, moved={}), then)
+        elif moved and self.changes.moved:
+            self._change(replace(self.changes, moved={}), then)
         else:
             self.on_loop(then)
             self.announce()
@@ -255,7 +243,7 @@ class WorldEditor:
         """Continue in another world with the same robots in their present state."""
         self._notes = {}
         self._swap(base, base.robot_roots)
-        self._base, self._changes = base, NOTHING
+        self.base, self.changes = base, NOTHING
         self._take_model()
 
     def announce(self) -> None:
@@ -275,7 +263,7 @@ class WorldEditor:
     def _frame_pose(self, frame: str) -> Matrix:
         if frame in ("", WORLD_FRAME):
             return np.eye(4)
-        entity = next((entity for entity in self._entities if entity.name == frame), None)
+        entity = next((entity for entity in self.entities if entity.name == frame), None)
         if entity is not None:
             return self.motions().of(entity).pose
         if mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_BODY, frame) < 0:
@@ -305,13 +293,13 @@ class WorldEditor:
     def _change(self, changes: WorldChanges, then: Callable[[], None] = lambda: None) -> None:
         """Continue with other changes to the same world; `then` is called in the same tick."""
         try:
-            built = changed_model(self._base, changes)
+            built = changed_model(self.base, changes)
         except WorldError as error:
             raise RequestError(Refusal.FAILED, str(error)) from error
         model = self._built.model
         known = [model.body(body).name for body in np.flatnonzero(model.body_parentid == 0)]
         self._swap(built, frozenset(known), then)
-        self._changes = changes
+        self.changes = changes
         names = {entity.name for entity in Entities(built, changes, {})}
         self._notes = {name: note for name, note in self._notes.items() if name in names}
         self._take_model()
@@ -344,6 +332,6 @@ class WorldEditor:
         self._built = built
 
     def _take_model(self) -> None:
-        self._entities = Entities(self._built, self._changes, self._notes)
+        self.entities = Entities(self._built, self.changes, self._notes)
         self._motions = EntityMotions(self._built.model)
         self.announce()
