@@ -10,10 +10,11 @@ import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
-from viser import GuiApi, GuiTabHandle
+import numpy as np
+from numpy.typing import NDArray
+from viser import GuiApi, GuiTabHandle, ViserServer
 
 from arm_viewer.channel import Channel
-from arm_viewer.page_look import LEFT_PANEL_WIDTH_PX, apply_look
 from arm_viewer.page_server import PageServer
 from arm_viewer.panels.calls import Calls
 from arm_viewer.panels.camera_panel import CameraPanel
@@ -37,7 +38,7 @@ from arm_viewer.recordings.player import Player
 from arm_viewer.recordings.recorder import Recorder
 from arm_viewer.requests import Send, Watch
 from arm_viewer.rviz_config import PageConfig
-from arm_viewer.scene.first_view import FirstView
+from arm_viewer.scene.first_view import CAMERA_FOV_RAD, CAMERA_POSITION, CAMERA_TARGET, FirstView
 from arm_viewer.scene.frames import Frames
 from arm_viewer.scene.poses import Poses
 from arm_viewer.snapshot import Snapshot
@@ -45,6 +46,15 @@ from arm_viewer.snapshot import Snapshot
 TICK_S = 1.0 / 30.0
 UNWATCHED_TICK_S = 0.2
 """Time between two updates while no browser is connected."""
+
+ACCENT = (28, 126, 214)
+SKY_ZENITH, SKY_HORIZON = (176, 206, 233), (242, 246, 249)
+SKY_HEIGHT_PX = 256
+FLOOR_COLOUR = (226, 229, 231)
+GRID_CELL, GRID_SECTION = (208, 212, 216), (178, 184, 190)
+GRID_FADE_M = 14.0
+RIGHT_PANEL_WIDTH_PX, LEFT_PANEL_WIDTH_PX = 236.0, 224.0
+"""Narrow enough that a browser window of 960 px shows more of the robots than of the panels."""
 
 Tabs = Mapping[str, tuple[Panel, ...]]
 """The panels of each tab, by title."""
@@ -81,7 +91,7 @@ async def _build(
     config: PageConfig | None,
     recordings: tuple[Player, Recorder] | None,
 ) -> tuple[Panel, ...]:
-    apply_look(server)
+    _apply_look(server)
     gui = server.gui
     poses = Poses(server.channel, lambda: len(server.get_clients()))
     frames = Frames(server.scene, poses)
@@ -131,6 +141,51 @@ async def _build(
         *channelled,
         planning,
     )
+
+
+def _apply_look(server: ViserServer) -> None:
+    """Set a light theme, lights, sky, floor and the camera's pose, all cheap in software."""
+    server.gui.configure_theme(
+        dark_mode=False, show_logo=False, show_share_button=False, brand_color=ACCENT
+    )
+    server.gui.main_panel.dock_right()
+    server.gui.main_panel.set_width(RIGHT_PANEL_WIDTH_PX)
+    scene = server.scene
+    # Without a graphics card the environment map costs most. Shadows cost as much as all else, and
+    # front/software_rendering.js switches them off there.
+    scene.configure_environment_map(None)
+    scene.configure_default_lights(enabled=False)
+    scene.add_light_directional(
+        "/lights/key", intensity=2.4, position=(1.0, -1.5, 2.5), cast_shadow=True
+    )
+    # Without a second light, faces that are turned away from the first one would be black.
+    scene.add_light_directional("/lights/fill", intensity=0.9, position=(-2.0, 0.5, 0.6))
+    scene.add_light_ambient("/lights/ambient", intensity=1.1)
+    scene.set_background_image(_sky(), format="png")
+    scene.add_grid(
+        "/ground",
+        infinite_grid=True,
+        fade_distance=GRID_FADE_M,
+        cell_size=0.1,
+        section_size=1.0,
+        cell_color=GRID_CELL,
+        section_color=GRID_SECTION,
+        cell_thickness=0.6,
+        section_thickness=0.9,
+        shadow_opacity=0.28,
+        plane_color=FLOOR_COLOUR,
+        plane_opacity=1.0,
+    )
+    camera = server.initial_camera
+    camera.position, camera.look_at = CAMERA_POSITION, CAMERA_TARGET
+    camera.fov = CAMERA_FOV_RAD
+
+
+def _sky() -> NDArray[np.uint8]:
+    """Return an image with a gradient from the zenith's colour to the horizon's."""
+    share = np.linspace(0.0, 1.0, SKY_HEIGHT_PX)[:, None, None]
+    column = (1.0 - share) * np.array(SKY_ZENITH) + share * np.array(SKY_HORIZON)
+    return np.repeat(column, 2, axis=1).astype(np.uint8)
 
 
 def _build_without_tab(

@@ -30,7 +30,7 @@ from arm_viewer.access import (
 )
 from arm_viewer.channel import PATH, Channel
 from arm_viewer.errors import PageError
-from arm_viewer.served_page import served_page
+from arm_viewer.front import served_page
 
 MAX_REASON = 200
 MAX_PATH = 255

@@ -25,6 +25,8 @@ from arm_viewer.errors import PageError
 from arm_viewer.page import page_running
 from arm_viewer.page_server import page_server
 from arm_viewer.requests import (
+    AddFile,
+    AddThing,
     Request,
     SetEmergencyStop,
     SetPlaying,
@@ -33,7 +35,6 @@ from arm_viewer.requests import (
     Watch,
 )
 from arm_viewer.snapshot import RunStatus, Snapshot
-from arm_viewer.world_requests import AddFile, AddThing
 
 TIMEOUT_S = 30.0
 LENGTHS = 16

@@ -18,9 +18,8 @@ from visualization_msgs.msg import Marker, MarkerArray
 from arm_viewer.recordings.curve import read_curve
 from arm_viewer.recordings.open_recording import Wanted
 from arm_viewer.recordings.recorded_bag import RecordedBag
-from arm_viewer.ros.number_places import number_places
 from arm_viewer.ros.observer import type_name
-from arm_viewer.ros.recorded_state import RecordedState
+from arm_viewer.ros.recorded_state import RecordedState, number_places
 
 URDF = robot(link("base"), link("hand"), joint("j0", "base", "hand"))
 S = 1_000_000_000

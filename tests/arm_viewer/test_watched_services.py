@@ -2,11 +2,11 @@
 
 import pytest
 
+from arm_viewer.requests import LookAtThing, OpenWorld
 from arm_viewer.ros import controller_observer, run_observer, world_client
 from arm_viewer.ros.controller_observer import ControllerObserver
 from arm_viewer.ros.run_observer import RunObserver
 from arm_viewer.ros.world_client import WorldClient
-from arm_viewer.world_requests import LookAtThing, OpenWorld
 
 LIST = "/controller_manager/list_controllers"
 

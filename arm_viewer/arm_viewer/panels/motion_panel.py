@@ -20,15 +20,16 @@ from arm_viewer.planning import (
     default_group,
     named_poses,
 )
-from arm_viewer.planning_requests import (
+from arm_viewer.requests import (
     DragTip,
     ExecutePlan,
     JogTip,
     PlanMotion,
+    Request,
+    Send,
     SetGoal,
     StopMotion,
 )
-from arm_viewer.requests import Request, Send
 from arm_viewer.scene.drag_handle import DragHandle
 from arm_viewer.scene.frames import Frames, node_name
 from arm_viewer.scene.ghost import Colour, Ghost, Trail

@@ -16,9 +16,8 @@ from viser import GuiApi
 
 from arm_viewer.channel import Browser, Channel, Message
 from arm_viewer.errors import BrowserMessageError
-from arm_viewer.plots.field_paths import parse_curve
+from arm_viewer.plots.field_paths import parse_curve, unit_of
 from arm_viewer.plots.history import Curves, CurveSamples, thinned
-from arm_viewer.plots.units import unit_of
 from arm_viewer.requests import ListNumbers, PlotCurves, Send
 from arm_viewer.snapshot import Description, JointReading, ListedController, Snapshot
 

@@ -12,8 +12,7 @@ from arm_planning.scene.objects import CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
 from arm_viewer.panels.panel import in_order, note, say
 from arm_viewer.planning import PlanningView
-from arm_viewer.planning_requests import AddObject, RemoveObject
-from arm_viewer.requests import Send
+from arm_viewer.requests import AddObject, RemoveObject, Send
 from arm_viewer.scene.planning_objects import PlanningObjects
 from arm_viewer.world.shape_fields import KINDS, SIZE_HINT, ObjectKind, read_pose, read_shape
 

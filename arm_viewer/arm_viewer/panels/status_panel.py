@@ -7,7 +7,6 @@ import cv2
 import numpy as np
 from viser import GuiApi, GuiEvent, Icon
 
-from arm_viewer.page_look import BACKGROUND
 from arm_viewer.panels.panel import fill
 from arm_viewer.snapshot import Snapshot
 
@@ -44,6 +43,8 @@ BANNER = (
 )
 MAX_WAIT_S = 60.0
 PICTURE_NAME = "arm.png"
+BACKGROUND = (235, 242, 248)
+"""Background colour of a screenshot."""
 
 
 class StatusPanel:

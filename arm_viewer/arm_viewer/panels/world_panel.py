@@ -10,7 +10,19 @@ from arm_node.rigid_transform import RigidTransform, Vector
 from arm_viewer.channel import Browser, Channel, Message
 from arm_viewer.panels.file_drop import FileDrop
 from arm_viewer.panels.panel import PROBLEM_COLOUR, distinct, fill, in_order, note, say, show
-from arm_viewer.requests import Send
+from arm_viewer.requests import (
+    AddFile,
+    AddThing,
+    LookAtThing,
+    OpenWorld,
+    PlaceThing,
+    PushThing,
+    RemoveThing,
+    Send,
+    SetGravity,
+    SetProperties,
+    WorldRequest,
+)
 from arm_viewer.scene.drag_handle import DragHandle
 from arm_viewer.snapshot import Snapshot
 from arm_viewer.world.dropped_file import DroppedFile
@@ -24,18 +36,6 @@ from arm_viewer.world.shape_fields import (
     read_pose,
 )
 from arm_viewer.world.world_view import Thing, ThingProperties, WorldView, gravity_words
-from arm_viewer.world_requests import (
-    AddFile,
-    AddThing,
-    LookAtThing,
-    OpenWorld,
-    PlaceThing,
-    PushThing,
-    RemoveThing,
-    SetGravity,
-    SetProperties,
-    WorldRequest,
-)
 
 CHOOSE = "choose_thing"
 """A browser's message: the name of the thing that is chosen; empty for none."""

@@ -1,13 +1,14 @@
 """Numbers in messages, by paths such as `position[j0]` and `pose.position.x`.
 
 An element of an array is named by its index or by its name: joints by the array of names beside
-it, as in JointState, or around it, as in a controller's state; messages by their own names. This
-module needs no ROS: a message is whatever lists its fields.
+it, as in JointState, or around it, as in a controller's state; messages by their own names. Units
+are known where REP 103 or the message's definition fixes them. This module needs no ROS: a message
+is whatever lists its fields.
 """
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,6 +24,39 @@ MAX_LISTED = 64
 _TOPIC = re.compile(r"/[^.\[\]]*")
 _STEP = re.compile(r"\.([A-Za-z_]\w*)|\[([^\[\]]+)\]")
 _TIME = ("sec", "nanosec")
+
+_OF_FIELDS = tuple(
+    (re.compile(pattern), unit)
+    for pattern, unit in (
+        (r"accel\w*\.angular\.[xyz]$", "rad/s²"),
+        (r"accel\w*\.linear\.[xyz]$|linear_acceleration\.[xyz]$", "m/s²"),
+        (r"(^|\.)angular(_velocity)?\.[xyz]$", "rad/s"),
+        (r"(^|\.)linear\.[xyz]$", "m/s"),
+        (r"(^|\.)(position|translation|point)\.[xyz]$", "m"),
+        (r"(^|\.)force\.[xyz]$", "N"),
+        (r"(^|\.)torque\.[xyz]$", "N m"),
+        (r"(^|\.)(stamp|time_from_start|clock)$", "s"),
+        (r"(^|\.)voltage$", "V"),
+        (r"(^|\.)current$", "A"),
+        (r"(^|\.)temperature$", "°C"),
+        (r"(^|\.)fluid_pressure$", "Pa"),
+        (r"(^|\.)ranges?(\[\d+\])?$", "m"),
+    )
+)
+_OF_JOINTS = {
+    "position": ("rad", "m"),
+    "velocity": ("rad/s", "m/s"),
+    "acceleration": ("rad/s²", "m/s²"),
+    "effort": ("N m", "N"),
+}
+"""Units of a joint that turns, and of one that slides."""
+_PLURALS = {"positions": "position", "velocities": "velocity", "accelerations": "acceleration"}
+_OF_A_JOINT = (
+    re.compile(r"(?:^|\.)(?P<quantity>\w+)\[(?P<joint>[^\[\]]+)\]$"),
+    re.compile(r"\[(?P<joint>[^\[\]]+)\]\.values\[(?P<quantity>\w+)\]$"),
+    re.compile(r"\[\w+_interface\.(?P<joint>[^\[\]/]+)/(?P<quantity>\w+)\]\.value$"),
+)
+"""In JointState and its kin, DynamicJointState, and the introspection data of ros2_control."""
 
 _Steps = tuple[str, ...]
 Read = Callable[[Any], float]
@@ -85,6 +119,21 @@ def numbers_in(message: Any) -> Iterator[str]:
     """Yield the paths of all numbers in a message, without times of stamps."""
     for steps in _listed(message, (), ()):
         yield "".join(steps).removeprefix(".")
+
+
+def unit_of(path: str, slides: Mapping[str, bool]) -> str:
+    """Return the unit of a number; empty if it is not known or there is none.
+
+    Args:
+        path: of the number in its message, such as "position[j0]".
+        slides: whether a joint slides instead of turning, by name.
+    """
+    for pattern in _OF_A_JOINT:
+        found = pattern.search(path)
+        if found and found["joint"] in slides:
+            quantity = _PLURALS.get(found["quantity"], found["quantity"])
+            return _OF_JOINTS.get(quantity, ("", ""))[slides[found["joint"]]]
+    return next((unit for pattern, unit in _OF_FIELDS if pattern.search(path)), "")
 
 
 class _Step:

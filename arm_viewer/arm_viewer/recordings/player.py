@@ -21,6 +21,7 @@ from arm_viewer.recordings.recorded_bag import RecordedBag
 from arm_viewer.recordings.run_check import RunCheck, is_run
 from arm_viewer.requests import (
     ListNumbers,
+    LookAtThing,
     MeasureRates,
     PlotCurves,
     Request,
@@ -31,7 +32,6 @@ from arm_viewer.requests import (
     Watch,
 )
 from arm_viewer.snapshot import Snapshot
-from arm_viewer.world_requests import LookAtThing
 
 REFUSED = "This is a recording: go back to live to move or change anything"
 _PASSED_ON = (

@@ -16,7 +16,7 @@ from arm_planning.ros.convert import joint_positions, trajectory_of
 from arm_planning.ros.goal_messages import joint_goal, move_goal, plan_message
 from arm_viewer.planned_path import PlannedPath, planned_path
 from arm_viewer.planning import Activity, GoalState, ShownPlan
-from arm_viewer.planning_requests import PlanMotion
+from arm_viewer.requests import PlanMotion
 from arm_viewer.ros.action_caller import ActionCaller
 from arm_viewer.ros.topic_reader import TopicReader
 

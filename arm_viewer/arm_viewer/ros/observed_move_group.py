@@ -9,7 +9,7 @@ from rclpy.node import Node
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_viewer.planning import GoalState, PlanningView, filled
-from arm_viewer.planning_requests import (
+from arm_viewer.requests import (
     AddObject,
     DragTip,
     ExecutePlan,

@@ -11,7 +11,7 @@ from std_msgs.msg import String
 from arm_description.urdf.robot import Robot
 from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.qos import LATCHED
-from arm_viewer.planning_requests import PlanningRequest
+from arm_viewer.requests import PlanningRequest
 from arm_viewer.ros.observer import Observer, TopicTypes, served
 from arm_viewer.ros.topic_reader import TopicGroup
 from arm_viewer.snapshot import SimulationTime, Snapshot

@@ -17,6 +17,9 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
+from arm_node.workarounds.cdr_layout import LITTLE_ENDIAN, CdrLayout
+from arm_node.workarounds.message_fields import float64_fields
+from arm_viewer.plots.field_paths import numbers_in, parse_curve, reader
 from arm_viewer.plots.history import Curves
 from arm_viewer.recordings.curve import NumberPlace, read_samples
 from arm_viewer.recordings.open_recording import Wanted
@@ -29,7 +32,6 @@ from arm_viewer.ros.joint_observer import WORD as JOINT_STATES
 from arm_viewer.ros.joint_observer import joint_readings
 from arm_viewer.ros.marker_observer import WORD as MARKERS
 from arm_viewer.ros.marker_observer import apply_marker
-from arm_viewer.ros.number_places import number_places
 from arm_viewer.ros.observer import type_name
 from arm_viewer.ros.robot_observer import DESCRIPTION_WORD, described, transforms_in
 from arm_viewer.snapshot import (
@@ -56,6 +58,11 @@ PLOTTED_NS = 20_000_000_000
 """How much of a curve before a moment is plotted after a jump."""
 MAX_LATCHED = 500
 """Newest messages of a topic that is published only when something changes."""
+MAX_BYTES = 20_000
+"""Longer messages are pictures, points or maps; nobody plots one of their numbers."""
+MAX_NUMBERS = 200
+MARK = 2.0**-900
+"""Numbers are found by multiples of it, which nothing else in a message is."""
 _IMAGES = (type_name(Image), type_name(CompressedImage))
 
 _logger = logging.getLogger(__name__)
@@ -330,3 +337,38 @@ def _unpacked_picture(message: CompressedImage) -> Picture | None:
         return None
     height, width = pixels.shape[:2]
     return Picture("bgr8", width, height, 3 * width, False, pixels.reshape(-1).astype(np.uint8))
+
+
+def number_places(data: bytes, message_class: type) -> dict[str, NumberPlace]:
+    """Return where each number stands, by its name, such as "position[j0]" or "pose.position.x"."""
+    if len(data) > MAX_BYTES or not data.startswith(LITTLE_ENDIAN):
+        return {}
+    try:
+        message = deserialize_message(data, message_class)
+    except Exception:
+        # rclpy raises any kind of error at bytes that are not a message of the type.
+        return {}
+    fields = list(float64_fields(message))
+    count = 0
+    for found in fields:
+        found.set_numbers([MARK * (count + n + 1) for n in range(found.size)])
+        count += found.size
+    layout = CdrLayout(message)
+    if not layout.is_known or layout.end > len(data):
+        return {}
+    offsets = {
+        number: layout.begins[found.key] + 8 * n
+        for found in fields
+        for n, number in enumerate(found.numbers)
+    }
+    pattern = np.frombuffer(data, dtype=np.uint8)
+    is_fixed = np.zeros(len(data), dtype=bool)
+    is_fixed[: len(LITTLE_ENDIAN)] = True
+    for begin, end in layout.fixed:
+        is_fixed[begin:end] = True
+    places: dict[str, NumberPlace] = {}
+    for path in islice(numbers_in(message), MAX_NUMBERS):
+        offset = offsets.get(reader(parse_curve(f"/topic.{path}"))(message))
+        if offset is not None:
+            places[path] = NumberPlace(offset, pattern, is_fixed)
+    return places

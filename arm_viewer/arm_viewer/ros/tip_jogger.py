@@ -16,7 +16,7 @@ from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_planning.robot.model import PlanningModel
 from arm_planning.ros.convert import pose_message
 from arm_viewer.planning import JogView, default_group
-from arm_viewer.planning_requests import JogTip
+from arm_viewer.requests import JogTip
 from arm_viewer.ros.service_caller import ServiceCaller
 from arm_viewer.ros.topic_reader import TopicReader
 from arm_viewer.snapshot import SimulationTime

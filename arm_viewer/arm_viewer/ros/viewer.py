@@ -15,12 +15,12 @@ from arm_node.polled_subscriptions import PolledSubscriptions
 from arm_node.printable import printable
 from arm_viewer.access import LOCAL_HOST
 from arm_viewer.calls.call import EndCall, OpenForm, PlaceCall
-from arm_viewer.planning_requests import PlanningRequest
 from arm_viewer.requests import (
     Configure,
     ListNumbers,
     MeasureRates,
     MoveJoints,
+    PlanningRequest,
     PlotCurves,
     Request,
     ResetRun,
@@ -33,6 +33,7 @@ from arm_viewer.requests import (
     SwitchControllers,
     UseSnapshot,
     Watch,
+    WorldRequest,
 )
 from arm_viewer.ros.call_desk import CallDesk
 from arm_viewer.ros.camera_observer import CameraObserver, ImageObserver
@@ -54,7 +55,6 @@ from arm_viewer.ros.run_observer import RunObserver
 from arm_viewer.ros.stop_observer import StopObserver
 from arm_viewer.ros.world_client import WorldClient
 from arm_viewer.snapshot import ListedController, Snapshot
-from arm_viewer.world_requests import WorldRequest
 
 TICK_S = 1.0 / 30.0
 UNWATCHED_TICK_S = 0.2

@@ -26,17 +26,7 @@ from simulation_interfaces.srv import (
 )
 
 from arm_node.rigid_transform import RigidTransform, Vector
-from arm_viewer.ros.observer import Observer, TopicTypes
-from arm_viewer.ros.service_caller import ServiceCaller
-from arm_viewer.world.dropped_file import FileCheck
-from arm_viewer.world.world_view import (
-    Thing,
-    ThingProperties,
-    WorldAnswer,
-    WorldView,
-    gravity_words,
-)
-from arm_viewer.world_requests import (
+from arm_viewer.requests import (
     AddFile,
     AddThing,
     LookAtThing,
@@ -47,6 +37,16 @@ from arm_viewer.world_requests import (
     SetGravity,
     SetProperties,
     WorldRequest,
+)
+from arm_viewer.ros.observer import Observer, TopicTypes
+from arm_viewer.ros.service_caller import ServiceCaller
+from arm_viewer.world.dropped_file import FileCheck
+from arm_viewer.world.world_view import (
+    Thing,
+    ThingProperties,
+    WorldAnswer,
+    WorldView,
+    gravity_words,
 )
 
 SERVICE = "/get_entities_states"

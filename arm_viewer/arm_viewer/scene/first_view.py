@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 from viser import CameraHandle, ClientHandle, ViserServer
 
 from arm_description.view_fitting import Body, View, fit_view
-from arm_viewer.page_look import CAMERA_FOV_RAD
 
+CAMERA_POSITION, CAMERA_TARGET = (0.75, -0.75, 0.55), (0.0, 0.0, 0.2)
+CAMERA_FOV_RAD = 0.8
+"""Until there are robots."""
 SETTLED_S = 1.0
 """Robots and worlds arrive in several messages; the view waits until nothing new has arrived."""
 MAX_POSITIONS = 20

@@ -6,8 +6,7 @@ import math
 import pytest
 
 from arm_viewer.errors import BrowserMessageError
-from arm_viewer.plots.field_paths import numbers_in, parse_curve, reader
-from arm_viewer.plots.units import unit_of
+from arm_viewer.plots.field_paths import numbers_in, parse_curve, reader, unit_of
 
 
 class Fields:

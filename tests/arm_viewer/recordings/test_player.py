@@ -15,7 +15,10 @@ from arm_viewer.recordings.playback import Playback
 from arm_viewer.recordings.player import Player
 from arm_viewer.recordings.run_check import MAGIC, PROFILE, EqualPart, RunVerdict
 from arm_viewer.requests import (
+    AddFile,
+    LookAtThing,
     MoveJoints,
+    RemoveThing,
     SetEmergencyStop,
     SetPlaying,
     ShowContacts,
@@ -23,7 +26,6 @@ from arm_viewer.requests import (
 )
 from arm_viewer.snapshot import Snapshot
 from arm_viewer.world.dropped_file import DroppedFile
-from arm_viewer.world_requests import AddFile, LookAtThing, RemoveThing
 
 TIMEOUT_S = 60.0
 LIVE = Snapshot(made_s=1.0, stops=MappingProxyType({"": True}))

@@ -25,7 +25,7 @@ def page(launch, new_viewer):
 def do(page, group: str, place: str, turned: str) -> None:
     """Set the goal of a row, and move there."""
     from arm_viewer.planning import Activity, named_poses
-    from arm_viewer.planning_requests import DragTip, PlanMotion, SetGoal
+    from arm_viewer.requests import DragTip, PlanMotion, SetGoal
     from arm_viewer.world.shape_fields import read_pose
 
     before = page.node.latest().planning[""]

@@ -140,13 +140,13 @@ def ask(viewer):
 
 
 def chosen(name=NAME):
-    from arm_viewer.planning_requests import SetGoal
+    from arm_viewer.requests import SetGoal
 
     return SetGoal(name, "all", {"turn": 0.5})
 
 
 def planned(name=NAME):
-    from arm_viewer.planning_requests import PlanMotion
+    from arm_viewer.requests import PlanMotion
 
     return PlanMotion(name, 1.0, 1.0, executes=False)
 
@@ -157,7 +157,7 @@ def test_groups_and_named_poses_come_from_the_semantic_description(move_group, v
 
 
 def test_without_a_goal_or_a_plan_it_says_what_is_missing(move_group, ask):
-    from arm_viewer.planning_requests import ExecutePlan
+    from arm_viewer.requests import ExecutePlan
 
     view = ask(planned(), lambda view: view.said and view)
     assert "Choose a goal first" in view.said
@@ -173,7 +173,7 @@ def test_a_goal_in_collision_names_what_touches(move_group, ask):
 
 def test_the_goal_follows_the_tip_and_stays_where_it_cannot(move_group, ask):
     from arm_node.rigid_transform import RigidTransform
-    from arm_viewer.planning_requests import DragTip
+    from arm_viewer.requests import DragTip
 
     high, low = (DragTip(NAME, "all", RigidTransform((0.0, 0.0, z))) for z in (0.25, -0.25))
     goal = ask(high, lambda view: view.goal and view.goal.positions["turn"] == 0.25 and view.goal)
@@ -187,7 +187,7 @@ def test_the_goal_follows_the_tip_and_stays_where_it_cannot(move_group, ask):
 
 def test_a_plan_leads_to_the_pose_that_was_set_right_before_it(move_group, viewer, ask):
     from arm_node.rigid_transform import RigidTransform
-    from arm_viewer.planning_requests import DragTip
+    from arm_viewer.requests import DragTip
 
     ask(chosen(), lambda view: view.goal and view.goal.positions["turn"] == 0.5)
     move_group.goals.clear()
@@ -210,7 +210,7 @@ def test_the_robot_follows_poses_of_its_tip_while_a_servo_node_runs(
     from moveit_msgs.msg import ServoStatus
 
     from arm_node.rigid_transform import RigidTransform
-    from arm_viewer.planning_requests import JogTip
+    from arm_viewer.requests import JogTip
 
     assert viewer.node.latest().planning[NAME].jog is None
     servo = FakeServo(client_for_file)
