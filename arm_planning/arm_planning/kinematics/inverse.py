@@ -7,7 +7,7 @@ number of steps: the same call gives the same answer on a busy machine, or none 
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -277,10 +277,10 @@ class InverseKinematics:
         found: list[Array] = []
         stale = 0
         for q, _ in self._solutions(search):
-            is_new = all(np.abs(q - other).max() > ALIKE for other in found)
-            stale = 0 if is_new else stale + 1
-            if is_new:
+            stale += 1
+            if is_new(q, found):
                 found.append(q)
+                stale = 0
             if stale == STALE or len(found) == 2 * most:
                 break
         if not found:
@@ -392,6 +392,11 @@ class InverseKinematics:
             MoveItErrorCode.NO_IK_SOLUTION,
             shortfall(search, self.tip, self._names, self._lower, self._upper, self._chain),
         )
+
+
+def is_new(q: Array, others: Iterable[Array]) -> bool:
+    """Return whether a solution, (n,), differs from all others."""
+    return all(np.abs(q - other).max() > ALIKE for other in others)
 
 
 def _checked_tip(model: PlanningModel, group: JointGroup, tip: str) -> str:

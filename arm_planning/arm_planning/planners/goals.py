@@ -11,6 +11,7 @@ from arm_planning.constraints.constraints import MotionConstraints
 from arm_planning.constraints.evaluation import ConstraintEvaluator, LinkPose
 from arm_planning.errors import InvalidGoalError, MoveItErrorCode, PlanningError
 from arm_planning.kinematics.group_kinematics import GroupKinematics
+from arm_planning.kinematics.inverse import is_new
 from arm_planning.planners.goal_poses import poses_of
 from arm_planning.planners.problem import NO_DEADLINE, Deadline, StateChecker
 from arm_planning.robot.model import JointGroup, JointPositions, PlanningModel
@@ -21,8 +22,6 @@ MOST = 8
 """Goal states to choose from."""
 SAMPLES = 64
 """Joint positions, or poses, that are drawn for a goal whose middle cannot be reached."""
-ALIKE = 1e-2
-"""Goal states that differ by less in each joint are one, in rad or m."""
 WIDE = 0.1
 """Tolerance of an orientation, in rad, from which other orientations are tried as well."""
 SLACK = 1e-4
@@ -95,7 +94,7 @@ class GoalSampler:
         try:
             for candidate in self._candidates(goal, judge):
                 self.deadline.check(DOING)
-                if judge.accepts(candidate) and _is_new(candidate, found):
+                if judge.accepts(candidate) and is_new(candidate, found):
                     found.append(candidate)
                 if len(found) == MOST:
                     break
@@ -285,7 +284,3 @@ def _is_wide(goal: MotionConstraints) -> bool:
     """Whether a goal leaves so much open that its middle is only one of many."""
     turns = [max(each.tolerances) for each in goal.orientations]
     return max(turns, default=0.0) > WIDE or not (goal.positions and goal.orientations)
-
-
-def _is_new(q: Array, others: list[Array]) -> bool:
-    return all(np.abs(q - other).max() > ALIKE for other in others)

@@ -19,13 +19,12 @@ from arm_planning.errors import (
     InvalidStateError,
     MoveItErrorCode,
 )
+from arm_planning.kinematics.inverse import FARTHEST
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.scene.object_checks import rotation_problem, vector_problem
 from arm_planning.trajectory import TimedTrajectory
 
 NANOSECONDS = 1_000_000_000
-FARTHEST = 1e6
-"""Largest position of a joint, rad or m; beyond it, numbers get too coarse."""
 
 Warn = Callable[[str], None]
 """Takes a sentence for the user about something that is passed over."""

@@ -17,6 +17,7 @@ from arm_description.urdf.parser import parse_urdf
 from arm_node.qos import LATCHED
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.mesh_pieces import MeshPieces
+from arm_planning.configuration import KINEMATICS, PLANNING, SEMANTIC
 from arm_planning.errors import SettingError
 from arm_planning.kinematics.group_kinematics import KinematicsSettings, kinematics_settings
 from arm_planning.planner import resting_positions
@@ -30,9 +31,7 @@ from arm_planning.scene.scene import PlanningScene
 from arm_planning.setting_values import number, switch
 from arm_planning.srdf_maker import make_srdf
 
-URDF, SRDF = "robot_description", "robot_description_semantic"
-PLANNING = "robot_description_planning"
-KINEMATICS = "robot_description_kinematics"
+URDF = "robot_description"
 FOLLOW, POSE = "scene_from_world", "pose_in_world"
 TOPIC_TIMEOUT_S = 10.0
 LOGGER = logging.getLogger("move_group")
@@ -89,7 +88,7 @@ def read_setup(node: Node) -> PlanningSetup:
     paths = [Path(part) for part in _text(node, "package_path").split(":") if part]
     meshes = MeshPieces(ResourceFinder.of_description(urdf, paths))
     robot = parse_urdf(urdf)
-    srdf = _text(node, SRDF)
+    srdf = _text(node, SEMANTIC)
     if not srdf:
         LOGGER.info("no robot_description_semantic is given: groups are made from the URDF")
         srdf = srdf_text(make_srdf(robot, LOGGER.warning, meshes=meshes))

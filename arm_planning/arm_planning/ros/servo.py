@@ -22,6 +22,7 @@ from arm_node.names import describe_known
 from arm_node.parameter_values import read_parameter
 from arm_node.parameters import declare_typed, type_of
 from arm_node.setting import Setting, read_settings, settings_of
+from arm_planning.configuration import SERVO
 from arm_planning.errors import InvalidRequestError, PlanningError
 from arm_planning.robot.model import JointPositions, PlanningModel
 from arm_planning.ros.answering import offer_service
@@ -57,7 +58,6 @@ FARTHEST_BEHIND = 0.3
 EARLY_S = 1e-6
 LATE = 5
 """Periods that are caught up; after more the jog starts anew from the robot's state."""
-PREFIX = "moveit_servo"
 NOT_USED = """
     active_subgroup apply_twist_commands_about_ee_frame cartesian_command_in_topic
     check_octomap_collisions collision_check_rate joint_command_in_topic joint_topic
@@ -353,8 +353,8 @@ def read_servo_settings(node: Node) -> ServoSettings:
             declare_typed(node, each.name, kind, own, each.about, read_only=read_only)
         return found
 
-    settings = read_settings(ServoSettings, value, f"{PREFIX}.")
-    for warning in unknown_names(set(values_below(node, PREFIX))):
+    settings = read_settings(ServoSettings, value, f"{SERVO}.")
+    for warning in unknown_names(set(values_below(node, SERVO))):
         LOGGER.warning("%s", warning)
     return settings
 
@@ -365,4 +365,4 @@ def unknown_names(names: set[str]) -> Iterator[str]:
     for name in sorted(names - known):
         if name.partition(".")[0] in NOT_USED.split():
             continue
-        yield f"there is no parameter {PREFIX}.{name}; {describe_known(name, known)}"
+        yield f"there is no parameter {SERVO}.{name}; {describe_known(name, known)}"

@@ -18,7 +18,7 @@ from arm_description.resources import ResourceFinder
 from arm_description.urdf.parser import parse_urdf
 from arm_node.process import NodeProcess
 from arm_node.qos import LATCHED
-from arm_planning.configuration import PLANNING, move_group_parameters
+from arm_planning.configuration import PLANNING, SEMANTIC, move_group_parameters
 from arm_planning.errors import ControlError, InvalidObjectError, MoveItErrorCode, PlanningError
 from arm_planning.planner import Planner
 from arm_planning.planners.pilz.cartesian_limits import cartesian_limits
@@ -34,13 +34,13 @@ from arm_planning.ros.convert_scene import (
     scene_change_of,
 )
 from arm_planning.ros.plan_display import PlanDisplay
+from arm_planning.ros.robot_setup import URDF
 from arm_planning.scene.objects import CollisionObject
 from arm_planning.scene.scene import PlanningScene
 from arm_planning.scene.scene_changes import change_scene
 from arm_planning.tasks.solution import Solution
 
 POLL_S, REMINDER_S = 0.02, 10.0
-URDF, SRDF = "robot_description", "robot_description_semantic"
 
 
 class TaskRobot:
@@ -63,7 +63,7 @@ class TaskRobot:
         self._texts: dict[str, str] = {}
         subscriptions = [
             node.create_subscription(String, name, partial(self._take, name), LATCHED)
-            for name in (URDF, SRDF)
+            for name in (URDF, SEMANTIC)
         ]
         self._execute = ActionClient(node, ExecuteTrajectory, "execute_trajectory")
         self._get = node.create_client(GetPlanningScene, "get_planning_scene")
@@ -130,7 +130,7 @@ class TaskRobot:
         finder = ResourceFinder.of_description(self._texts[URDF])
         given = move_group_parameters(finder.find(configuration)).get(PLANNING, {})
         robot = parse_urdf(self._texts[URDF])
-        semantic = parse_srdf(self._texts[SRDF], robot)
+        semantic = parse_srdf(self._texts[SEMANTIC], robot)
         model = planning_model(robot, semantic, joint_limit_settings(given, self._warn), self._warn)
         planner = Planner(model, resources=finder, tip_limits=cartesian_limits(given))
         planner.scene = self._scene(planner.scene, model)

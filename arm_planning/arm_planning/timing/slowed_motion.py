@@ -22,10 +22,16 @@ Array = NDArray[np.float64]
 CELL_S = 0.01
 """Length of the cells in which the motion is looked at."""
 FEWEST_CELLS, MOST_CELLS = 100, 5000
+CLOSENESS = 2e-5
+"""How far the trajectory may leave these joint positions, in rad or m."""
 
 
 def within_limits(
-    motion: Callable[[Array], Array], duration_s: float, group: JointGroup, bounds: MotionLimits
+    motion: Callable[[Array], Array],
+    duration_s: float,
+    group: JointGroup,
+    velocity_scaling: float,
+    acceleration_scaling: float,
 ) -> TimedTrajectory:
     """Return the trajectory of a motion, slowed down where its joints could not follow.
 
@@ -33,9 +39,17 @@ def within_limits(
         motion: joint positions at times from 0 to the duration, (k,) to (k, n); rests at both ends.
         duration_s: above 0.
         group: the group.
-        bounds: the limits.
+        velocity_scaling: fraction of the velocity limits to use.
+        acceleration_scaling: fraction of the acceleration limits to use.
     """
-    able = _slowed(motion, duration_s, bounds)
+    bounds = MotionLimits(
+        velocity_scaling * np.array([limit.velocity for limit in group.limits]),
+        acceleration_scaling * np.array([limit.acceleration for limit in group.limits]),
+        np.full(len(group.joints), np.inf),
+        CLOSENESS,
+    )
+    lower, upper = group.lower, group.upper
+    able = _slowed(lambda t: np.clip(motion(t), lower, upper), duration_s, bounds)
     # A second look sees what the cells of the first were too coarse for.
     able = _slowed(able.positions, able.duration_s, bounds)
     haste = float(bounds.acceleration[np.isfinite(bounds.acceleration)].max(initial=1.0))

@@ -4,6 +4,7 @@ import itertools
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +12,11 @@ from numpy.typing import NDArray
 from arm_planning.errors import InvalidPlanError, InvalidStateError, PlanningError
 from arm_planning.planners.pilz.blend import DrivenMotion, Window, window
 from arm_planning.planners.pilz.planner import Free, PilzPlanner
-from arm_planning.planners.pilz.tip_motion import CLOSENESS, checked
+from arm_planning.planners.pilz.tip_motion import checked
 from arm_planning.planners.problem import NO_DEADLINE, Deadline
 from arm_planning.request import PlanRequest
 from arm_planning.robot.model import JointGroup, JointPositions
 from arm_planning.timing.slowed_motion import within_limits
-from arm_planning.timing.stepped_motion import MotionLimits
 from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
@@ -200,19 +200,9 @@ def _blended(
     ]
     velocity = max(item.request.velocity_scaling for item in items)
     acceleration = max(item.request.acceleration_scaling for item in items)
-    bounds = MotionLimits(
-        velocity * np.array([limit.velocity for limit in group.limits]),
-        acceleration * np.array([limit.acceleration for limit in group.limits]),
-        np.full(len(group.joints), np.inf),
-        CLOSENESS,
-    )
-    duration = sum(each.shift_s for each in windows) + functions[-1].duration_s
-    found = within_limits(
-        lambda times: np.clip(_states(functions, windows, times), group.lower, group.upper),
-        duration,
-        group,
-        bounds,
-    )
+    duration_s = sum(each.shift_s for each in windows) + functions[-1].duration_s
+    states = partial(_states, functions, windows)
+    found = within_limits(states, duration_s, group, velocity, acceleration)
     return checked("sequence", found, group.limits, velocity, acceleration)
 
 

@@ -15,7 +15,6 @@ from arm_planning.planners.pose_line import PoseLine
 from arm_planning.robot.model import PlanningLimits
 from arm_planning.timing.driven_spline import limit_violation
 from arm_planning.timing.slowed_motion import within_limits
-from arm_planning.timing.stepped_motion import MotionLimits
 from arm_planning.trajectory import TimedTrajectory
 
 Array = NDArray[np.float64]
@@ -28,8 +27,6 @@ DOUBLINGS = 5
 """How often their number is doubled while the tip leaves the curve between them."""
 OFF_CURVE_M, OFF_CURVE_RAD = 1e-4, 1e-3
 """How far it may leave the curve."""
-CLOSENESS = 2e-5
-"""How far the trajectory may leave these joint positions, in rad or m."""
 SHORTEST_M = 1e-9
 """Paths shorter than this are no motion."""
 
@@ -91,18 +88,11 @@ def tip_motion(
         acceleration_scaling * limits.max_trans_acc,
         acceleration_scaling * -limits.max_trans_dec,
     )
-    bounds = MotionLimits(
-        velocity_scaling * np.array([limit.velocity for limit in group.limits]),
-        acceleration_scaling * np.array([limit.acceleration for limit in group.limits]),
-        np.full(len(start), np.inf),
-        CLOSENESS,
-    )
 
     def nominal(times_s: Array) -> Array:
-        states = followed.positions(speed.distance(times_s) / length)
-        return np.clip(states, group.lower, group.upper)
+        return followed.positions(speed.distance(times_s) / length)
 
-    found = within_limits(nominal, speed.duration_s, group, bounds)
+    found = within_limits(nominal, speed.duration_s, group, velocity_scaling, acceleration_scaling)
     return checked(name, found, group.limits, velocity_scaling, acceleration_scaling)
 
 
