@@ -1,8 +1,8 @@
 """The states that a path may use: free ones, and those that satisfy constraints on the way."""
 
+from abc import ABC, abstractmethod
 from functools import lru_cache
 from math import ceil
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,33 +38,44 @@ TURN = np.pi
 """How far from the start a continuous joint is sampled, rad."""
 
 
-class Space(Protocol):
-    """The states that a search may use, and how it moves from one to another."""
+class Space(ABC):
+    """The states that a search may use, and how it moves from one to another.
 
-    lower: Array
-    """Lower bounds of states to sample, (n,)."""
-    upper: Array
-    """Their upper bounds, (n,)."""
+    Args:
+        checker: what is free.
+        lower: lower bounds of states to sample, (n,).
+        upper: their upper bounds.
+    """
+
+    def __init__(self, checker: StateChecker, lower: Array, upper: Array) -> None:
+        self.lower, self.upper = lower, upper
+        self._checker = checker
 
     def with_clearance(self, ends: Array) -> "Space":
-        """Return a space in which paths with these ends, (k, n), are more likely to be proved."""
-        ...
+        """Return a space in which paths with these ends, (k, n), are more likely to be proved.
+
+        By default it is the space itself: its moves are proved.
+        """
+        return self
 
     def project(self, q: Array) -> Array | None:
-        """Return a state near to one, (n,), that satisfies the constraints; None without any."""
-        ...
+        """Return a state near to one, (n,), that satisfies the constraints; None without any.
 
+        By default there are no constraints.
+        """
+        return q
+
+    @abstractmethod
     def advance(self, a: Array, b: Array) -> tuple[Array, bool]:
         """Go from a state towards another as far as it is worth it.
 
         Returns:
             The states after `a`, (k, n), and whether the last is `b`.
         """
-        ...
 
+    @abstractmethod
     def connect(self, a: Array, b: Array) -> Array | None:
         """Return the states after `a` on the way to `b`, (k, n); None if something blocks it."""
-        ...
 
 
 def space_of(problem: PlanningProblem, goals: Array, *, is_proved: bool = False) -> Space:
@@ -87,34 +98,29 @@ def space_of(problem: PlanningProblem, goals: Array, *, is_proved: bool = False)
     return kind(problem.checker, lower, upper)
 
 
-class SampledSpace:
+class SampledSpace(Space):
     """Free states; a straight move counts as free if samples of it are.
 
     A path of such moves is proved afterwards: most are free, and samples are much faster.
 
     Args:
-        checker: what is free.
-        lower: lower bounds of states, (n,).
-        upper: their upper bounds.
+        checker: see `Space`.
+        lower: likewise.
+        upper: likewise.
         clearance_m: distance that a move all of the way keeps from what is around.
     """
 
     def __init__(
         self, checker: StateChecker, lower: Array, upper: Array, clearance_m: float = 0.0
     ) -> None:
-        self.lower, self.upper = lower, upper
-        self._checker, self._clearance_m = checker, clearance_m
-        self._free_count = checker.free_count
+        super().__init__(checker, lower, upper)
+        self._free_count, self._clearance_m = checker.free_count, clearance_m
 
     def with_clearance(self, ends: Array) -> Space:
         """Return a space whose moves keep some clearance, if the ends have it."""
         if self._free_count(ends, CLEARANCE_M) < len(ends):
             return self
         return SampledSpace(self._checker, self.lower, self.upper, CLEARANCE_M)
-
-    def project(self, q: Array) -> Array | None:
-        """Return the state itself."""
-        return q
 
     def advance(self, a: Array, b: Array) -> tuple[Array, bool]:
         """Go straight until something blocks, and stop a little before it."""
@@ -164,20 +170,8 @@ def _samples(change: Array, step: float) -> int:
     return int(max(map(abs, change.tolist())) / step) + 1
 
 
-class ProvedSpace:
+class ProvedSpace(Space):
     """Free states; each straight move is proved."""
-
-    def __init__(self, checker: StateChecker, lower: Array, upper: Array) -> None:
-        self.lower, self.upper = lower, upper
-        self._checker = checker
-
-    def with_clearance(self, ends: Array) -> Space:
-        """Return the space itself: its paths are proved."""
-        return self
-
-    def project(self, q: Array) -> Array | None:
-        """Return the state itself."""
-        return q
 
     def advance(self, a: Array, b: Array) -> tuple[Array, bool]:
         """Go straight, all of the way or the first part of it."""
@@ -192,7 +186,7 @@ class ProvedSpace:
         return b[None, :] if self._checker.is_free_edge(a, b) else None
 
 
-class ConstrainedSpace:
+class ConstrainedSpace(Space):
     """Free states that satisfy constraints; moves are small steps, each projected.
 
     The projection is Gauss-Newton on how far each component is outside of its tolerance. After
@@ -202,14 +196,9 @@ class ConstrainedSpace:
     def __init__(
         self, checker: StateChecker, path: ConstraintEvaluator, lower: Array, upper: Array
     ) -> None:
-        self.lower, self.upper = lower, upper
-        self._checker = checker
+        super().__init__(checker, lower, upper)
         self._path = path
         self._tight = path.tightened(TIGHTER)
-
-    def with_clearance(self, ends: Array) -> Space:
-        """Return the space itself: its moves are proved."""
-        return self
 
     def project(self, q: Array) -> Array | None:
         """Return a state near to one that satisfies the constraints within the limits."""

@@ -68,8 +68,7 @@ class DrivenSpline:
     @classmethod
     def of(cls, trajectory: TimedTrajectory) -> "DrivenSpline":
         """Return the curve that a controller drives."""
-        rows = (trajectory.positions, trajectory.velocities, trajectory.accelerations)
-        p, v, a = rows
+        p, v, a = _rows(trajectory)
         return cls.between(
             np.diff(trajectory.times_s), (p[:-1], v[:-1], a[:-1]), (p[1:], v[1:], a[1:])
         )
