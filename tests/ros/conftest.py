@@ -23,6 +23,11 @@ QUEUE_DEPTH = 1000
 second would lose messages of a 100 Hz topic."""
 
 
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Mark every test of this folder."""
+    item.add_marker("ros")
+
+
 @pytest.fixture
 def launch(tmp_path: Path) -> Iterator[Callable[..., Program]]:
     """Start `arm launch ARGUMENTS`, which ends with the test at the latest."""

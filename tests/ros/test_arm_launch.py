@@ -16,8 +16,6 @@ import pytest
 
 from launch_py.fast_dds.shared_memory import PREFIXES, lock_files, lock_owners
 
-pytestmark = pytest.mark.ros
-
 POSE = [0.5, 0.3, -0.4, 0.2]
 FIRST_PORT = 7400
 """The first UDP port of domain 0."""

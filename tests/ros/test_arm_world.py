@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from simulated import PAUSED, PLAYING, Simulated
 
-pytestmark = pytest.mark.ros
-
 
 def write_controllers(folder: Path, update_rate: int) -> Path:
     path = folder / "controllers.yaml"

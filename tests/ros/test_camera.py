@@ -21,8 +21,6 @@ from arm_gazebo.camera.process import CameraProcess
 from arm_gazebo.sensors.camera import CameraSensor
 from launch_py.fast_dds.shared_memory import PREFIXES
 
-pytestmark = pytest.mark.ros
-
 MJCF = """
 <mujoco>
   <worldbody>

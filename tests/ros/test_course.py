@@ -5,8 +5,6 @@ import math
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.ros
-
 TOPIC = "/position_controller/commands"
 DECAY_S = 1 / (0.1 * 30)
 

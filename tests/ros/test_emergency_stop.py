@@ -9,8 +9,6 @@ from run_python import run_python
 from arm_cli.doctor.verb import examine_running
 from arm_cli.ros.connection import connect
 
-pytestmark = pytest.mark.ros
-
 START_TIMEOUT_S = 120.0
 MOVING_RAD_S = 0.05
 LEFT, RIGHT = ([f"{name}_j{number}" for number in range(4)] for name in ("left", "right"))

@@ -2,8 +2,6 @@
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 ROBOT = """<robot name="cell"><link name="world"/><link name="slide"><inertial><mass value="1"/>
 <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <joint name="j0" type="prismatic"><parent link="world"/><child link="slide"/><axis xyz="1 0 0"/>

@@ -17,8 +17,6 @@ from arm_cli.doctor.diagnosis import Severity
 from arm_cli.doctor.network import check_listening, find_listeners
 from launch_py.system.dds_profile import shipped_profile
 
-pytestmark = pytest.mark.ros
-
 HERE, THERE = "10.77.0.1", "10.77.0.2"
 TIMEOUT_S = 90.0
 

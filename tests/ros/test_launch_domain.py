@@ -7,7 +7,7 @@ import signal
 import pytest
 from run_python import run_python
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 
 WORLDS = 4
 SMALLEST = ("camera:=none", "controller_node:=false", "use_robot_state_pub:=false")

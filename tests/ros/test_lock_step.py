@@ -11,8 +11,6 @@ import yaml
 from run_python import run_python
 from simulated import PAUSED, PLAYING, Simulated
 
-pytestmark = pytest.mark.ros
-
 PARTNER = Path(__file__).with_name("lock_step_partner.py")
 TIMEOUT_S = 120.0
 LAST = 400

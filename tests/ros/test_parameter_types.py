@@ -36,8 +36,6 @@ from arm_gazebo.run.settings import simulation_settings
 from arm_node.parameters import declare_setting
 from arm_viewer.ros.viewer import Viewer
 
-pytestmark = pytest.mark.ros
-
 ROOT = Path(__file__).parents[2]
 CONTROLLERS: dict[str, Any] = yaml.safe_load(
     (Path(__file__).parent / "arm_control/manager/parameter_surface.yaml").read_text()

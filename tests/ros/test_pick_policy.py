@@ -12,7 +12,6 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "pick_policy"
 TIMEOUT_S = 250.0
 
 
-@pytest.mark.ros
 @pytest.mark.slow
 @pytest.mark.timeout(400)
 def test_the_policy_lifts_cylinders_over_ros(launch):

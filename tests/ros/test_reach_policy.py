@@ -10,7 +10,6 @@ NODE = Path(__file__).parents[2] / "examples" / "reach_policy" / "drive_node.py"
 TIMEOUT_S = 150.0
 
 
-@pytest.mark.ros
 @pytest.mark.slow
 def test_the_policy_reaches_random_goals_over_ros(launch):
     # At half speed, so that a busy machine does not miss a goal.

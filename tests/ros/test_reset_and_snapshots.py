@@ -6,8 +6,6 @@ from typing import Any
 import pytest
 from simulated import OK, PAUSED, PLAYING, Simulated
 
-pytestmark = pytest.mark.ros
-
 ARM, GRIPPER = "/arm_controller/follow_joint_trajectory", "/gripper_action_controller/gripper_cmd"
 JOINTS = (
     *("link1_to_link2", "link2_to_link3", "link3_to_link4", "link4_to_link5"),

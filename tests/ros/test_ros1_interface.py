@@ -7,8 +7,6 @@ import numpy as np
 import pytest
 from programs import RosProgram
 
-pytestmark = pytest.mark.ros
-
 TYPE = "position_controllers/JointPositionController"
 ORIGINAL_POSE = [-5.0, 0.5, -1.2, -1.0]
 LIMIT = -2.57

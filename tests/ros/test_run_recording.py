@@ -17,8 +17,6 @@ from arm_description.xacro.expansion import expand_xacro
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
 
-pytestmark = pytest.mark.ros
-
 TIMEOUT_S = 60.0
 
 

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 import yaml
 
-pytestmark = pytest.mark.ros
-
 PATIENCE_S = 90.0
 G = 9.81
 IMU = [

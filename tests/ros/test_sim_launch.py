@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from robots import TETRAHEDRON_OBJ
 
-pytestmark = pytest.mark.ros
-
 FRAME = '<link name="base_link"/><link name="upper"/><link name="lower"/>'
 LIMIT = '<limit lower="-2" upper="2" effort="20" velocity="2"/>'
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'

@@ -7,8 +7,6 @@ from pathlib import Path
 import pytest
 import yaml
 
-pytestmark = pytest.mark.ros
-
 PROGRAM = """
 import sys, threading
 from unittest import mock

@@ -3,8 +3,6 @@
 import pytest
 from simulated import PAUSED, PLAYING, Simulated
 
-pytestmark = pytest.mark.ros
-
 START_TIMEOUT_S = 120.0
 PERIOD_S = 0.01
 RATE_HZ = 25.0

@@ -10,8 +10,6 @@ from simulated import Simulated
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
 
-pytestmark = pytest.mark.ros
-
 CRATE = crate(size=0.2)
 MOON = [0.0, 0.0, -1.62]
 

@@ -7,8 +7,6 @@ import pytest
 from robots import crate
 from simulated import OK, PAUSED, PLAYING, Simulated
 
-pytestmark = pytest.mark.ros
-
 CRATE = crate(size=0.2)
 WALL = """<sdf version="1.9"><model name="wall"><static>true</static><link name="l">
   <visual name="v"><geometry><box><size>6 6 6</size></box></geometry>

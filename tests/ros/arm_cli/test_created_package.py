@@ -7,7 +7,7 @@ import sysconfig
 import pytest
 from run_python import run_python
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.slow
 
 TIMEOUT_S = 150.0
 

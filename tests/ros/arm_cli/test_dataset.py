@@ -7,7 +7,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
-pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation_with_camera")]
+pytestmark = pytest.mark.usefixtures("simulation_with_camera")
 
 COMMAND = (
     "arm topic pub --rate 10 /position_controller/commands "

@@ -6,8 +6,6 @@ import time
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 TIMEOUT_S = 120.0
 
 

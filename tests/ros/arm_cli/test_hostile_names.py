@@ -10,8 +10,6 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-pytestmark = pytest.mark.ros
-
 HOSTILE = "a\x1b[2J\x1b]0;owned\x07\nforged: true\x9b"
 SHOWN = r"a\x1b[2J\x1b]0;owned\x07\nforged: true\x9b"
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

@@ -7,7 +7,7 @@ import threading
 import pytest
 from sensor_msgs.msg import JointState
 
-pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation")]
+pytestmark = pytest.mark.usefixtures("simulation")
 
 TRAJECTORY = (
     "{trajectory: {joint_names: [j0, j1, j2, j3], points: [{positions: [%s], "

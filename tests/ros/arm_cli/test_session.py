@@ -13,8 +13,6 @@ from arm_cli.names import absolute_name
 from arm_cli.ros import session as session_module
 from arm_cli.ros.session import ACKNOWLEDGE_TIMEOUT_S, open_session
 
-pytestmark = pytest.mark.ros
-
 
 class Clock:
     """A time that goes on by a little with each look at it."""

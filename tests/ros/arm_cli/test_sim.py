@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation_with_camera")]
+pytestmark = pytest.mark.usefixtures("simulation_with_camera")
 
 CAN = """<sdf version="1.9"><model name="tin"><static>true</static><link name="l">
 <collision name="c"><geometry><cylinder><radius>0.03</radius><length>0.1</length></cylinder>

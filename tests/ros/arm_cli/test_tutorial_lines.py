@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation_with_camera")]
+pytestmark = pytest.mark.usefixtures("simulation_with_camera")
 
 TOPICS = """\
 /camera_info /clock /dynamic_joint_states /joint_state_broadcaster/transition_event /joint_states

@@ -14,8 +14,6 @@ from std_srvs.srv import Trigger
 from arm_cli.main import main
 from arm_cli.ros import session
 
-pytestmark = pytest.mark.ros
-
 ACTION = "control_msgs/action/GripperCommand"
 
 

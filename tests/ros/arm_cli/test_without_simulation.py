@@ -10,8 +10,6 @@ from rclpy.qos import qos_profile_system_default
 from rclpy.service_introspection import ServiceIntrospectionState
 from std_srvs.srv import SetBool
 
-pytestmark = pytest.mark.ros
-
 ECHOED = "data: one\n---\n---\ndata: two\n---\n"
 
 

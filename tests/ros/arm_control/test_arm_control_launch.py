@@ -2,10 +2,6 @@
 
 from typing import Any
 
-import pytest
-
-pytestmark = pytest.mark.ros
-
 
 def test_one_spawner_after_the_other_and_unspawner_takes_them_out(
     manager: Any, control: Any, launch: Any, unspawn: Any

@@ -9,7 +9,7 @@ import pytest
 from arm_sim.bench.feetech_servos import FeetechServos
 from arm_sim.bench.serial_device import EmulatedPort
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 ACTIVE = 3
 
 

@@ -8,8 +8,6 @@ import pytest
 from arm_description.publishers.ros_robot_state_publisher import spinning
 from arm_node import executor_thread
 
-pytestmark = pytest.mark.ros
-
 
 @pytest.fixture
 def node():

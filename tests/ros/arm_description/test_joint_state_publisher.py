@@ -4,8 +4,6 @@ import signal
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 NODE = "joint_state_publisher"
 MODULE = "joint_state_publisher_node"
 

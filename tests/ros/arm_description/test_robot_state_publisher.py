@@ -5,8 +5,6 @@ import signal
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 NODE = "robot_state_publisher"
 MODULE = "robot_state_publisher_node"
 HALF = math.sqrt(0.5)

@@ -2,8 +2,6 @@
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 NODE = "robot_state_publisher"
 
 

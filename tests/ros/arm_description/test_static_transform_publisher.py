@@ -8,8 +8,6 @@ import pytest
 from arm_description.errors import SettingsError
 from arm_description.static_transform_publisher_node import parameters_of, unit_quaternion
 
-pytestmark = pytest.mark.ros
-
 MODULE = "static_transform_publisher_node"
 HALF = math.sqrt(0.5)
 

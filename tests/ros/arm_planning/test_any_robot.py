@@ -9,8 +9,6 @@ import pytest
 from programs import RosProgram
 from robots import box, joint, link, robot
 
-pytestmark = pytest.mark.ros
-
 
 @pytest.fixture
 def urdf(tmp_path: Path) -> Path:

@@ -3,14 +3,11 @@
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
 from programs import Program
 from run_python import run_python
 
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
-
-pytestmark = pytest.mark.ros
 
 PARTNER = Path(__file__).with_name("lock_step_planner.py")
 TIMEOUT_S = 240.0

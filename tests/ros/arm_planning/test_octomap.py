@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.ros
-
 PLACE, RADIUS_M, HEIGHT_M = (0.22, 0.12), 0.0125, 0.35
 """Of the red cylinder."""
 FLOOR_M = -0.025

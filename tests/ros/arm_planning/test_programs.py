@@ -9,8 +9,6 @@ from types import SimpleNamespace
 import pytest
 from programs import Program
 
-pytestmark = pytest.mark.ros
-
 TIMEOUT_S = 100.0
 
 

@@ -15,7 +15,7 @@ from rosbags.highlevel import AnyReader
 from arm_sim.bench.mycobot_arm import EmulatedMyCobot
 from arm_sim.bench.serial_device import EmulatedPort
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,6 @@ import pytest
 from programs import RosProgram
 from simulated import OK, Simulated
 
-pytestmark = pytest.mark.ros
-
 SUCCESS, CONTROL_FAILED = 1, -4
 SUCCEEDED, ABORTED = 4, 6
 SCOPE_TIME, SCOPE_ALL = 1, 255

@@ -9,8 +9,6 @@ from typing import Any
 import pytest
 from programs import Program
 
-pytestmark = pytest.mark.ros
-
 INVALID, FINE, DECELERATE_FOR_COLLISION, HALT_FOR_COLLISION = -1, 0, 4, 5
 JOINT_JOG, TWIST = 0, 1
 BASE, SHOULDER = "link1_to_link2", "link2_to_link3"

@@ -12,7 +12,6 @@ from arm_gazebo.recording.run_file import RunFile
 from arm_sim.errors import BenchError
 
 pytestmark = [
-    pytest.mark.ros,
     pytest.mark.arm_ros(arguments={"camera": "none", "real_time_factor": 4}),
 ]
 

@@ -20,8 +20,6 @@ from arm_gazebo.recording.comparison import compare
 from arm_gazebo.recording.run_file import RecordedInput, RunFile, StateBlock
 from arm_sim import NAMED_ROBOTS, Goal, Simulation
 
-pytestmark = pytest.mark.ros
-
 ARM, GRIPPER = "arm_controller", "gripper_action_controller"
 CAN = """<sdf version='1.9'><model name='can'><link name='body'>
 <inertial><mass>0.05</mass><inertia><ixx>1e-4</ixx><iyy>1e-4</iyy><izz>1e-4</izz></inertia></inertial>

@@ -5,11 +5,8 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from arm_sim import Simulation
-
-pytestmark = pytest.mark.ros
 
 POSE = [1.0, 0.5, 0.1, 0.5]
 

@@ -2,10 +2,6 @@
 
 import math
 
-import pytest
-
-pytestmark = pytest.mark.ros
-
 
 class FakeTopics:
     """One topic, its next message, and the time before which what it brought is outdated."""

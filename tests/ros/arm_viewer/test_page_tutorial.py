@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 
 PAGE = Path(__file__).parents[3] / "docs/tutorials/page.md"
 ROW = re.compile(r"\| ([^|`]+) \| `(\w+)` \| `([^`]+)` \| (?:`([^`]+)`)? *\|")

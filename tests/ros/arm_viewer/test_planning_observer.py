@@ -4,8 +4,6 @@ from functools import partial
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 URDF = """<robot name='r'><link name='base'/><link name='arm'/>
   <joint name='turn' type='revolute'><parent link='base'/><child link='arm'/>
     <limit lower='-1' upper='1' effort='1' velocity='1'/></joint></robot>"""

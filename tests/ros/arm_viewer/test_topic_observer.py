@@ -6,8 +6,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 FLOAT, STATE = "std_msgs/msg/Float64", "sensor_msgs/msg/JointState"
 TOPIC = "/late/joint_states"
 

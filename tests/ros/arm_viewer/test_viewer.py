@@ -1,9 +1,6 @@
 """What the page's node makes of topics, and what it publishes; without a page."""
 
 import numpy as np
-import pytest
-
-pytestmark = pytest.mark.ros
 
 URDF = """<robot name='r'><link name='base'/><link name='arm'/><link name='finger'/>
   <joint name='turn' type='revolute'><parent link='base'/><child link='arm'/>

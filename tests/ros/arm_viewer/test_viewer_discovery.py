@@ -2,8 +2,6 @@
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 
 @pytest.fixture
 def stranger(client):

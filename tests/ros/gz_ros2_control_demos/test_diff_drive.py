@@ -6,8 +6,6 @@ from math import atan2, cos, sin
 import pytest
 from programs import Program
 
-pytestmark = pytest.mark.ros
-
 DRIVE = "/diff_drive_base_controller"
 EXAMPLE = (sys.executable, "-m", "arm_cli", "run", "gz_ros2_control_demos")
 EXAMPLE_TIMEOUT_S = 90.0

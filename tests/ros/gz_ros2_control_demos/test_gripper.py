@@ -5,8 +5,6 @@ import sys
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 EXAMPLE = (sys.executable, "-m", "arm_cli", "run", "gz_ros2_control_demos", "example_gripper")
 EXAMPLE_TIMEOUT_S = 90.0
 

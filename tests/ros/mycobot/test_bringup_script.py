@@ -10,7 +10,7 @@ from programs import Program
 
 from arm_description.resources import resolve_uri
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.slow
 
 
 def lives(process: psutil.Process) -> bool:

@@ -7,8 +7,6 @@ from typing import Any
 import pytest
 from robots import MYCOBOT_ARM
 
-pytestmark = pytest.mark.ros
-
 TARGET = (1.345, -1.23, 0.264, -0.296, 0.389, -1.5)
 HOME = (0.0,) * 6
 FOLLOWERS = {

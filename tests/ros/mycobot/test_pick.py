@@ -11,8 +11,6 @@ import pytest
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
 
-pytestmark = pytest.mark.ros
-
 CONTROLLERS = ("joint_state_broadcaster", "arm_controller", "gripper_action_controller")
 HELD = re.compile(r"The object is held, at (\S+) rad")
 PICK_TIMEOUT_S = 150.0

@@ -6,7 +6,7 @@ import sys
 import pytest
 from simulated import Simulated
 
-pytestmark = [pytest.mark.ros, pytest.mark.slow]
+pytestmark = pytest.mark.slow
 
 DEMO = (sys.executable, "-m", "arm_cli", "run", "mycobot_mtc_demos", "pick_place_demo")
 TIMEOUT_S = 250.0

@@ -11,8 +11,6 @@ from robots import MYCOBOT_ARM
 from run_python import run_python
 from simulated import Simulated
 
-pytestmark = pytest.mark.ros
-
 PACKAGE = "mycobot_mtc_pick_place_demo"
 LAUNCH_FILE = "pick_place_demo.launch.py"
 SERVICE = "/get_planning_scene_mycobot"

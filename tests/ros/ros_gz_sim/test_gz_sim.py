@@ -1,9 +1,6 @@
 """`arm launch ros_gz_sim gz_sim.launch.py gz_args:=shapes.sdf`: the shapes are there to be seen."""
 
 import numpy as np
-import pytest
-
-pytestmark = pytest.mark.ros
 
 CHANNELS = {"box": 0, "cylinder": 1, "sphere": 2}
 """The red, the green and the blue shape."""

@@ -1,9 +1,5 @@
 """`arm launch ros_gz_sim_demos joint_states.launch.py`: a pendulum swings, and publishes it."""
 
-import pytest
-
-pytestmark = pytest.mark.ros
-
 
 def test_the_pendulum_swings_freely(launch, client):
     from sensor_msgs.msg import JointState

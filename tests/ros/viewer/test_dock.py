@@ -6,7 +6,7 @@ import re
 import pytest
 from page_user import DESK, PHONE, PageUser
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 
 CAMERA = "none"
 SIZES = {"desk": DESK, "phone": PHONE}

@@ -8,7 +8,7 @@ from page_user import DESK, PHONE, PageUser
 from robots import box, control, crate, joint, link, robot, sensor
 from simulated import Simulated
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 
 REACH_M, HEIGHT_M = 0.3, 0.4
 IMAGE = "<image><width>64</width><height>48</height></image>"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from page_user import TIMEOUT_S
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 
 ARRIVAL_S = 10.0
 """The arm takes two seconds from one end of a slider to the other."""

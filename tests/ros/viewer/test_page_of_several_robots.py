@@ -2,7 +2,7 @@
 
 import pytest
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 
 ARM = """<robot name="$(arg p)arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
 <xacro:arg name="p" default=""/>

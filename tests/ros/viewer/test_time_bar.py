@@ -6,7 +6,7 @@ import pytest
 from page_user import DESK, KEEP_WHAT_IS_SAID, PHONE, PageUser
 from simulated import PAUSED, PLAYING, Simulated
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 
 PERIOD_S = 0.01
 TOLERANCE_S = 0.03

@@ -19,7 +19,7 @@ from arm_gazebo.ros.contact_markers import contact_markers
 from arm_gazebo.world.contacts import Contact
 from arm_sim import Simulation
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 
 LENGTH_S = 20.0
 LONG_S = 150.0

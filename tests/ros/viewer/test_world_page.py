@@ -10,7 +10,7 @@ import pytest
 from page_user import DESK, KEEP_WHAT_IS_SAID, PHONE, PageUser
 from simulated import Simulated
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 
 CAMERA = "none"
 SIZES = {"desk": DESK, "phone": PHONE}

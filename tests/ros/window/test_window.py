@@ -2,9 +2,6 @@
 
 import numpy as np
 import psutil
-import pytest
-
-pytestmark = pytest.mark.ros
 
 TIMEOUT_S = 90.0
 POSE = [1.5, 0.9, 0.9, 0.5]

@@ -2,8 +2,6 @@
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 DRIVE = "/mecanum_drive_controller"
 
 

@@ -17,7 +17,7 @@ from tf2_msgs.msg import TFMessage
 
 from arm_cli.bag_format.reader import BagReader
 
-pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation")]
+pytestmark = pytest.mark.usefixtures("simulation")
 
 RECORDED = "/joint_states /tf /tf_static /robot_description"
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

@@ -13,8 +13,6 @@ from arm_cli.bag_format.topic import BagMessage, BagTopic, find_definition
 from arm_cli.bag_format.writer import BagSettings, BagWriter
 from arm_cli.interface_types import InterfaceIndex
 
-pytestmark = pytest.mark.ros
-
 STRING = "std_msgs/msg/String"
 START_NS = 1_700_000_000_000_000_000
 DAY_NS = 86_400 * 10**9

@@ -3,7 +3,6 @@
 import itertools
 import time
 
-import pytest
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from std_msgs.msg import String
@@ -15,8 +14,6 @@ from arm_cli.bag_format.writer import BagSettings, BagWriter
 from arm_cli.errors import BagError
 from arm_cli.ros.qos import RECORDING_DEPTH
 from arm_cli.ros.session import open_session
-
-pytestmark = pytest.mark.ros
 
 TOPIC = "/stream"
 TIMEOUT_S = 60.0

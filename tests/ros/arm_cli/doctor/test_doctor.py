@@ -15,7 +15,7 @@ from trajectory_msgs.msg import JointTrajectory
 from arm_cli.doctor.diagnosis import Severity
 from arm_cli.doctor.verb import SIMULATION
 
-pytestmark = [pytest.mark.ros, pytest.mark.usefixtures("simulation")]
+pytestmark = pytest.mark.usefixtures("simulation")
 
 BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 

@@ -1,10 +1,6 @@
 """`arm doctor` beside a simulation with an impossible real-time factor."""
 
-import pytest
-
 from arm_cli.doctor.diagnosis import Severity
-
-pytestmark = pytest.mark.ros
 
 CHECK = "real-time factor"
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-pytestmark = [pytest.mark.ros, pytest.mark.timeout(600)]
+pytestmark = pytest.mark.timeout(600)
 
 SOURCES = Path(__file__).parents[4] / "examples" / "servo_arm"
 ACTIVE = 3

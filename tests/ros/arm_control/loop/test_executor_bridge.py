@@ -10,8 +10,6 @@ from arm_control.errors import LoopStoppedError
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.pacer import Pacer
 
-pytestmark = pytest.mark.ros
-
 TIMEOUT_S = 60.0
 
 

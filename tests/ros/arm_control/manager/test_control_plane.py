@@ -18,8 +18,6 @@ from arm_control.manager.controller_manager import ControllerManager
 from arm_control.manager.switch_planner import SwitchRequest
 from arm_control.testing import fake_hardware
 
-pytestmark = pytest.mark.ros
-
 TIMEOUT_S = 30.0
 
 

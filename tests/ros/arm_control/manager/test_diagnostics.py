@@ -5,8 +5,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 TASKS = ("Controllers Activity", "Hardware Components Activity", "Controller Manager Activity")
 TIMES = "diagnostics.threshold.controllers.execution_time"
 OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"

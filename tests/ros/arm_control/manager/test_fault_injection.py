@@ -6,8 +6,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 FAULTY = "test_faults/FaultyController"
 PARAMETERS = {
     "/**/controller_manager": {

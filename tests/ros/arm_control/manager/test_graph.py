@@ -5,8 +5,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
 JOINTS = ("j0", "j1", "j2", "j3")
 

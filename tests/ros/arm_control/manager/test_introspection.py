@@ -4,8 +4,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 JOINTS = ("j0", "j1", "j2", "j3")
 
 

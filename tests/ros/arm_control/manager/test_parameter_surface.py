@@ -6,8 +6,6 @@ from typing import Any
 import pytest
 import yaml
 
-pytestmark = pytest.mark.ros
-
 SURFACE: dict[str, Any] = yaml.safe_load(
     (Path(__file__).parent / "parameter_surface.yaml").read_text(encoding="utf-8")
 )

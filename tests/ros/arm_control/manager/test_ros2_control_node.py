@@ -8,8 +8,6 @@ from typing import Any
 import pytest
 import yaml
 
-pytestmark = pytest.mark.ros
-
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
 JOINTS = ("j0", "j1")
 STRICT = 2

@@ -12,8 +12,6 @@ from arm_control.manager.controller_creation import MANAGER
 from arm_control.manager.parameter_file import ParametersByNode
 from arm_gazebo.launching.controllers_file import read_controllers
 
-pytestmark = pytest.mark.ros
-
 VALUES = """
 ctrl:
   ros__parameters:

@@ -7,8 +7,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 JTC = "joint_trajectory_controller"
 POSITION = "position_controller"
 JOINTS = ("j0", "j1", "j2", "j3")

@@ -8,8 +8,6 @@ import pytest
 
 from arm_cli.main import main
 
-pytestmark = pytest.mark.ros
-
 POSITION = "position_controller"
 
 

@@ -7,8 +7,6 @@ from typing import Any
 import pytest
 from std_msgs.msg import String
 
-pytestmark = pytest.mark.ros
-
 
 @pytest.fixture
 def spawn_hardware(run: Any) -> Callable[..., Any]:

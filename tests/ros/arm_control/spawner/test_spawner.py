@@ -11,8 +11,6 @@ import pytest
 from controller_manager_msgs.msg import ControllerState
 from controller_manager_msgs.srv import ConfigureController, ListControllers
 
-pytestmark = pytest.mark.ros
-
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
 
 

@@ -5,8 +5,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 POSITION = "position_controllers/JointGroupPositionController"
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
 

@@ -5,8 +5,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 
 def test_it_deactivates_and_unloads(control: Any, unspawn: Any) -> None:
     control.start("joint_state_broadcaster", "position_controller")

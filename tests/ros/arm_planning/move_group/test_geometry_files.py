@@ -8,8 +8,6 @@ import pytest
 from moveit_msgs.msg import CollisionObject
 from moveit_msgs.srv import LoadGeometryFromFile, SaveGeometryToFile
 
-pytestmark = pytest.mark.ros
-
 
 def save(planning: Any, path: Path) -> bool:
     request = SaveGeometryToFile.Request(file_path_and_name=str(path))

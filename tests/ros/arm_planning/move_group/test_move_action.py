@@ -8,8 +8,6 @@ from typing import Any
 import pytest
 from programs import RosProgram
 
-pytestmark = pytest.mark.ros
-
 SUCCESS, PREEMPTED, INVALIDATED, CONTROL_FAILED = 1, -7, -3, -4
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
 TURN = "link1_to_link2"

@@ -6,8 +6,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 SUCCESS = 1
 SERVICES = {
     "/plan_kinematic_path": "moveit_msgs/srv/GetMotionPlan",

@@ -6,8 +6,6 @@ import pytest
 from moveit_msgs.msg import DisplayTrajectory, MotionSequenceItem, MotionSequenceRequest
 from moveit_msgs.srv import GetMotionSequence
 
-pytestmark = pytest.mark.ros
-
 
 @pytest.fixture
 def shown(planning: Any) -> Any:

@@ -4,10 +4,7 @@ import sys
 from contextlib import closing
 from pathlib import Path
 
-import pytest
 from programs import RosProgram
-
-pytestmark = pytest.mark.ros
 
 
 def test_a_program_of_pymoveit2_works_as_it_is(planning):

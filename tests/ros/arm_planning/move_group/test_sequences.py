@@ -11,8 +11,6 @@ from moveit_msgs.action import MoveGroupSequence
 from moveit_msgs.msg import MotionSequenceItem, MotionSequenceRequest, MoveItErrorCodes
 from moveit_msgs.srv import GetMotionSequence
 
-pytestmark = pytest.mark.ros
-
 SUCCESS = MoveItErrorCodes.SUCCESS
 PTP = {
     "planner_id": "PTP",

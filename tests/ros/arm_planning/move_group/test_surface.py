@@ -5,8 +5,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 PAGE = Path(__file__).parents[4] / "docs" / "reference" / "moveit.md"
 EVERY_NODE_HAS = ("rcl_interfaces/", "type_description_interfaces/")
 TOPICS_OF_EVERY_NODE = ("/rosout", "/parameter_events", "/clock")

@@ -4,8 +4,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
 GRIPPER, EFFORT, PARALLEL = "gripper_controller", "effort_gripper", "parallel_gripper"
 SEND_GOAL = f"/{GRIPPER}/gripper_cmd/_action/send_goal"

@@ -7,8 +7,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 NAME = "joint_trajectory_controller"
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
 HERE = (0.0, 0.0, 0.0, 0.0)

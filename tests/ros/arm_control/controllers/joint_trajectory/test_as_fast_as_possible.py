@@ -6,8 +6,6 @@ from typing import Any
 import pytest
 import yaml
 
-pytestmark = pytest.mark.ros
-
 STILL = (0.0, 0.0, 0.0, 0.0)
 HOME = (0.0, 0.0, 0.0, 0.0)
 THERE = (0.4, 0.3, 0.2, 0.3)

@@ -5,8 +5,6 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.ros
-
 NAME = "joint_trajectory_controller"
 JOINTS = ["j0", "j1", "j2", "j3"]
 HERE = (0.0, 0.0, 0.0, 0.0)

@@ -14,8 +14,6 @@ from arm_control.controllers.joint_trajectory.state import (
     StateLayout,
 )
 
-pytestmark = pytest.mark.ros
-
 LAYOUT = StateLayout(
     joints=("j0", "j1"),
     reference=("position", "velocity", "acceleration"),

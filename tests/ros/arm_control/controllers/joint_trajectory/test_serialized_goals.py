@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-pytestmark = [pytest.mark.ros, pytest.mark.workaround("serialized_goals")]
+pytestmark = pytest.mark.workaround("serialized_goals")
 
 
 @pytest.fixture
