@@ -27,6 +27,7 @@ from launch_py.substitutions import (
     PathJoinSubstitution,
 )
 
+IS_ROS1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
 DESCRIPTION_ARGUMENTS: dict[str, tuple[Any, ...]] = {
     "j0_pos": ("0.0", "where j0 starts, in rad"),
     "j1_pos": ("0.0", "where j1 starts, in rad"),
@@ -84,12 +85,11 @@ ROS1_DEFAULTS = {"camera": "side", "camera_profile": "ros1"}
 
 def declared(arguments: Mapping[str, tuple[Any, ...]]) -> list[DeclareLaunchArgument]:
     """Return the declarations of a table of arguments."""
-    is_ros1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
     return [
         DeclareLaunchArgument(
             name,
             default_value=IfElseSubstitution(
-                is_ros1, if_value=ROS1_DEFAULTS[name], else_value=default
+                IS_ROS1, if_value=ROS1_DEFAULTS[name], else_value=default
             )
             if name in ROS1_DEFAULTS
             else default,
@@ -115,9 +115,8 @@ def assignments(**arguments: str) -> str:
 def arguments() -> list[Action]:
     """Return the launch arguments, and what sets them from the course."""
     model = PathJoinSubstitution([FindPackageShare("arm_description"), "urdf", "arm.urdf.xacro"])
-    is_ros1 = EqualsSubstitution(LaunchConfiguration("interface"), "ros1")
     file = IfElseSubstitution(
-        is_ros1, if_value="arm_control_ros1.yaml", else_value="arm_control.yaml"
+        IS_ROS1, if_value="arm_control_ros1.yaml", else_value="arm_control.yaml"
     )
     controllers = PathJoinSubstitution([FindPackageShare("arm_control"), "config", file])
     return [
@@ -125,35 +124,30 @@ def arguments() -> list[Action]:
         OpaqueFunction(function=take_course),
         DeclareLaunchArgument("model", default_value=model, description="URDF or xacro file"),
         DeclareLaunchArgument("interface", **INTERFACE_ARGUMENT),
-        DeclareLaunchArgument(
-            "robot_name",
-            default_value="arm",
-            description="with interface:=ros1, the namespace of all nodes of the robot",
-        ),
-        DeclareLaunchArgument(
-            "namespace",
-            default_value=IfElseSubstitution(is_ros1, if_value=LaunchConfiguration("robot_name")),
-            description="namespace of all nodes of the robot",
-        ),
-        DeclareLaunchArgument(
-            "controllers",
-            default_value=controllers,
-            description="parameter file of the controller manager and its controllers",
-        ),
-        DeclareLaunchArgument(
-            "spawn",
-            default_value="",
-            description="controllers to start with the simulation, separated by commas",
-        ),
-        DeclareLaunchArgument(
-            "hold_joints",
-            default_value=IfElseSubstitution(
-                EqualsSubstitution(LaunchConfiguration("spawn"), ""),
-                if_value="false",
-                else_value="true",
-            ),
-            description="joints that no controller claims hold their position; by default if "
-            "`spawn` names controllers",
+        *declared(
+            {
+                "robot_name": (
+                    "arm",
+                    "with interface:=ros1, the namespace of all nodes of the robot",
+                ),
+                "namespace": (
+                    IfElseSubstitution(IS_ROS1, if_value=LaunchConfiguration("robot_name")),
+                    "namespace of all nodes of the robot",
+                ),
+                "controllers": (
+                    controllers,
+                    "parameter file of the controller manager and its controllers",
+                ),
+                "spawn": (
+                    "",
+                    "controllers to start with the simulation, separated by commas",
+                ),
+                "hold_joints": (
+                    NotSubstitution(EqualsSubstitution(LaunchConfiguration("spawn"), "")),
+                    "joints that no controller claims hold their position; by default if `spawn` "
+                    "names controllers",
+                ),
+            }
         ),
         *declared(DESCRIPTION_ARGUMENTS),
         *declared(ROS1_ARGUMENTS),

@@ -37,119 +37,87 @@ MODEL_PATH = "GZ_SIM_RESOURCE_PATH"
 SIMULATION = [each for each in settings_of(SimulationSettings) if each.launches]
 PLACE = [each for each in settings_of(RobotSettings) if each.launches]
 SWITCH = ["true", "false"]
+MODEL: dict[str, tuple[Any, ...]] = {
+    "model": ("", "URDF or xacro file"),
+    "gz_args": ("", 'the same as Gazebo\'s options: "-r -v 4 objects.sdf"'),
+    "resource_path": (
+        "",
+        "folders for model://, separated by colons, before GZ_SIM_RESOURCE_PATH",
+    ),
+}
+ROBOT: dict[str, tuple[Any, ...]] = {
+    "model_args": ("", 'arguments of a xacro model: "a:=1 b:=2"'),
+    "controllers": (
+        "",
+        "parameter file of the controller manager and its controllers, where ${name} or "
+        "$(var name) is an argument of the model; by default a position controller, with "
+        "planning:=true a trajectory controller",
+    ),
+    "spawn": (
+        "auto",
+        "controllers to start with the simulation, separated by commas; auto starts those whose "
+        "joints are not claimed yet, in the file's order, and leaves out those that cannot start",
+    ),
+    "namespace": ("", "namespace of all nodes of the robot"),
+}
+SEVERAL: dict[str, tuple[Any, ...]] = {
+    "robots": (
+        "",
+        "YAML file of several robots in one world, instead of a model: NAMESPACE: "
+        "{model: FILE, and model_args, controllers, spawn, package_path, base, pose}",
+    ),
+    "copies": (
+        "1",
+        "copies of the robot in one world, on a square grid, each in a namespace of its own: the "
+        "robot's name, or `namespace`, with _0, _1 and so on",
+    ),
+    "copy_spacing": ("1.0", "distance of neighbours on that grid, in m; the first is at `pose`"),
+}
+HARDWARE: dict[str, tuple[Any, ...]] = {
+    "hardware": (
+        "simulation",
+        "what the controllers drive: simulation, mock, feetech, mycobot_280, or a plugin, such as "
+        "my_package/MyServos",
+    ),
+    "port": ("", "serial port of a real arm, such as /dev/ttyUSB0"),
+    "calibration": ("", "calibration file of a real arm, by `arm calibrate` or LeRobot"),
+    "hardware_args": ("", 'other <param>s of the hardware plugin: "a:=1 b:=2"'),
+}
+NODES: dict[str, tuple[Any, ...]] = {
+    "log_level": ("info", "log level of the simulation", ["info", "warn", "error", "fatal"]),
+    "use_sim_time": ("true", "the state publisher uses simulation time", SWITCH),
+    "use_robot_state_pub": ("true", "publish the links' transforms on /tf", SWITCH),
+    "planning": ("false", "start move_group, which plans motions for MoveIt's clients", SWITCH),
+    "viewer": ("false", "serve the browser page that shows and moves it", SWITCH),
+    "use_rviz": (
+        "false",
+        "start RViz; the browser page replaces it if it is not installed",
+        SWITCH,
+    ),
+    "rviz_config_file": (
+        PathJoinSubstitution([FindPackageShare("arm_description"), "config", "rviz", "arm.rviz"]),
+        "what RViz shows",
+    ),
+}
 
 
-def robot_arguments() -> list[DeclareLaunchArgument]:
-    """Return the arguments about one robot beside `model`, and about several."""
+def declared(table: Mapping[str, tuple[Any, ...]]) -> list[DeclareLaunchArgument]:
+    """Return the declarations of arguments: of each its default, description and any choices."""
     return [
         DeclareLaunchArgument(
-            "model_args",
-            default_value="",
-            description='arguments of a xacro model: "a:=1 b:=2"',
-        ),
-        DeclareLaunchArgument(
-            "controllers",
-            default_value="",
-            description="parameter file of the controller manager and its controllers, where "
-            "${name} or $(var name) is an argument of the model; by default a position controller, "
-            "with planning:=true a trajectory controller",
-        ),
-        DeclareLaunchArgument(
-            "spawn",
-            default_value="auto",
-            description="controllers to start with the simulation, separated by commas; auto "
-            "starts those whose joints are not claimed yet, in the file's order, and leaves out "
-            "those that cannot start",
-        ),
-        DeclareLaunchArgument(
-            "namespace", default_value="", description="namespace of all nodes of the robot"
-        ),
-        *(DeclareLaunchArgument(each.name, **each.launch_argument) for each in PLACE),
-        DeclareLaunchArgument(
-            "robots",
-            default_value="",
-            description="YAML file of several robots in one world, instead of a model: NAMESPACE: "
-            "{model: FILE, and model_args, controllers, spawn, package_path, base, pose}",
-        ),
-        DeclareLaunchArgument(
-            "copies",
-            default_value="1",
-            description="copies of the robot in one world, on a square grid, each in a namespace "
-            "of its own: the robot's name, or `namespace`, with _0, _1 and so on",
-        ),
-        DeclareLaunchArgument(
-            "copy_spacing",
-            default_value="1.0",
-            description="distance of neighbours on that grid, in m; the first is at `pose`",
-        ),
+            name,
+            default_value=default,
+            description=text,
+            choices=choices[0] if choices else None,
+        )
+        for name, (default, text, *choices) in table.items()
     ]
 
 
-def hardware_arguments() -> list[DeclareLaunchArgument]:
-    """Return the arguments about a real arm in place of the simulation."""
-    return [
-        DeclareLaunchArgument(
-            "hardware",
-            default_value="simulation",
-            description="what the controllers drive: simulation, mock, feetech, mycobot_280, or a "
-            "plugin, such as my_package/MyServos",
-        ),
-        DeclareLaunchArgument(
-            "port", default_value="", description="serial port of a real arm, such as /dev/ttyUSB0"
-        ),
-        DeclareLaunchArgument(
-            "calibration",
-            default_value="",
-            description="calibration file of a real arm, by `arm calibrate` or LeRobot",
-        ),
-        DeclareLaunchArgument(
-            "hardware_args",
-            default_value="",
-            description='other <param>s of the hardware plugin: "a:=1 b:=2"',
-        ),
-    ]
-
-
-def node_arguments() -> list[DeclareLaunchArgument]:
-    """Return the arguments about the nodes that are started."""
-    return [
-        DeclareLaunchArgument(
-            "log_level",
-            default_value="info",
-            description="log level of the simulation",
-            choices=["info", "warn", "error", "fatal"],
-        ),
-        DeclareLaunchArgument(
-            "use_sim_time",
-            default_value="true",
-            description="the state publisher uses simulation time",
-            choices=SWITCH,
-        ),
-        DeclareLaunchArgument(
-            "use_robot_state_pub",
-            default_value="true",
-            description="publish the links' transforms on /tf",
-            choices=SWITCH,
-        ),
-        DeclareLaunchArgument(
-            "planning",
-            default_value="false",
-            choices=["true", "false"],
-            description="start move_group, which plans motions for MoveIt's clients",
-        ),
-        DeclareLaunchArgument(
-            "viewer",
-            default_value="false",
-            description="serve the browser page that shows and moves it",
-            choices=SWITCH,
-        ),
-        DeclareLaunchArgument(
-            "use_rviz",
-            default_value="false",
-            description="start RViz; the browser page replaces it if it is not installed",
-            choices=SWITCH,
-        ),
-    ]
+def included(package: str, name: str, **options: Any) -> IncludeLaunchDescription:
+    """Return the launch file of that name of a package."""
+    path = PathJoinSubstitution([FindPackageShare(package), "launch", name])
+    return IncludeLaunchDescription(PythonLaunchDescriptionSource(path), **options)
 
 
 @contextmanager
@@ -386,56 +354,31 @@ def generate_launch_description() -> LaunchDescription:
     """Return the simulation and the state publisher."""
     return LaunchDescription(
         [
-            DeclareLaunchArgument("model", default_value="", description="URDF or xacro file"),
-            DeclareLaunchArgument(
-                "gz_args",
-                default_value="",
-                description='the same as Gazebo\'s options: "-r -v 4 objects.sdf"',
-            ),
+            *declared(MODEL),
             OpaqueFunction(function=take_gz_args),
-            DeclareLaunchArgument(
-                "resource_path",
-                default_value="",
-                description="folders for model://, separated by colons, before "
-                "GZ_SIM_RESOURCE_PATH",
-            ),
             AppendEnvironmentVariable(
                 MODEL_PATH, LaunchConfiguration("resource_path"), prepend=True
             ),
-            *robot_arguments(),
+            *declared(ROBOT),
+            *(DeclareLaunchArgument(each.name, **each.launch_argument) for each in PLACE),
+            *declared(SEVERAL),
             *(DeclareLaunchArgument(each.name, **each.launch_argument) for each in SIMULATION),
-            *hardware_arguments(),
-            *node_arguments(),
-            DeclareLaunchArgument(
-                "rviz_config_file",
-                default_value=PathJoinSubstitution(
-                    [FindPackageShare("arm_description"), "config", "rviz", "arm.rviz"]
-                ),
-                description="what RViz shows",
-            ),
+            *declared(HARDWARE),
+            *declared(NODES),
             OpaqueFunction(function=simulate),
-            IncludeLaunchDescription(
-                PythonLaunchDescriptionSource(
-                    PathJoinSubstitution(
-                        [FindPackageShare("arm_planning"), "launch", "move_group.launch.py"]
-                    )
-                ),
+            included(
+                "arm_planning",
+                "move_group.launch.py",
                 condition=IfCondition(LaunchConfiguration("planning")),
             ),
-            IncludeLaunchDescription(
-                PythonLaunchDescriptionSource(
-                    PathJoinSubstitution(
-                        [FindPackageShare("arm_viewer"), "launch", "viewer.launch.py"]
-                    )
-                ),
+            included(
+                "arm_viewer",
+                "viewer.launch.py",
                 condition=IfCondition(LaunchConfiguration("viewer")),
             ),
-            IncludeLaunchDescription(
-                PythonLaunchDescriptionSource(
-                    PathJoinSubstitution(
-                        [FindPackageShare("arm_viewer"), "launch", "rviz.launch.py"]
-                    )
-                ),
+            included(
+                "arm_viewer",
+                "rviz.launch.py",
                 launch_arguments={"page_is_open": LaunchConfiguration("viewer")},
             ),
         ]
