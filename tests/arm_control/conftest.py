@@ -115,11 +115,7 @@ class Bench(ManagerBench):
     ) -> Probe:
         """Load and configure a probe."""
         probe = self.load(name, fallback_names=fallback_names)
-        self.manager.configure_controller(
-            name,
-            ProbeParameters(commands, states),
-            rate_hz,
-        )
+        self.manager.configure_controller(name, ProbeParameters(commands, states), rate_hz)
         return probe
 
     def states(self) -> dict[str, str]:

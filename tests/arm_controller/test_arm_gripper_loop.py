@@ -49,10 +49,7 @@ def told(caplog):
 def test_a_round_is_target_close_home_open_with_pauses(told):
     robot = FakeRobot()
     said = told(robot)
-    assert robot.did == [
-        *("connect", TARGET, "pause", CLOSED),
-        *(HOME, "pause", OPEN, "pause"),
-    ]
+    assert robot.did == [*("connect", TARGET, "pause", CLOSED), *(HOME, "pause", OPEN, "pause")]
     assert said == [
         ("INFO", "Moving to target position"),
         ("INFO", "Reached target position - Pausing"),

@@ -5,13 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from arm_controller import ros_arm
-from arm_controller.ros_arm import (
-    CONTROLLER,
-    OTHERS,
-    OTHERS_WAIT_S,
-    SETTLE_S,
-    MatchedPublisher,
-)
+from arm_controller.ros_arm import CONTROLLER, OTHERS, OTHERS_WAIT_S, SETTLE_S, MatchedPublisher
 
 ADDRESSEE = "/position_controller"
 

@@ -255,11 +255,7 @@ def test_the_large_camera():
     assert (camera.width, camera.height, camera.hfov) == (800, 800, 1.3962634)
     assert (camera.near, camera.far, camera.noise_stddev) == (0.02, 300.0, 0.007)
     assert camera.image_topics == ("videocamera", "camera/image_raw")
-    assert camera.info_topics == (
-        "camera_info",
-        "videocamera/camera_info",
-        "camera/camera_info",
-    )
+    assert camera.info_topics == ("camera_info", "videocamera/camera_info", "camera/camera_info")
 
 
 def test_the_camera_of_ros_1_is_the_large_one_on_absolute_topics():

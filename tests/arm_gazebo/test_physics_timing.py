@@ -43,8 +43,7 @@ def test_fixed_step_must_be_positive(step_s):
 
 
 @pytest.mark.parametrize(
-    ("rate_hz", "step_s", "what"),
-    [(1e9, None, "update_rate"), (100, 1e-9, "the physics step")],
+    ("rate_hz", "step_s", "what"), [(1e9, None, "update_rate"), (100, 1e-9, "the physics step")]
 )
 def test_a_step_that_is_too_short_is_refused(rate_hz, step_s, what):
     with pytest.raises(TimingError, match=f"{what} makes physics steps shorter than 1e-06 s"):

@@ -17,11 +17,7 @@ Parts = list[tuple[str, type, dict[str, Any]]]
 def parts(recorded: Recorded, load_type: Callable[[str], type]) -> Parts:
     """Name the messages of a package, those inside services and actions too, with their record."""
     return [
-        (
-            f"{type_name}.{part}",
-            cls if part == "Message" else getattr(cls, part),
-            record,
-        )
+        (f"{type_name}.{part}", cls if part == "Message" else getattr(cls, part), record)
         for type_name, of in recorded.items()
         for cls in (load_type(type_name),)
         for part, record in of.items()

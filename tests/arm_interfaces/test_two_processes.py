@@ -24,8 +24,7 @@ def trajectory_goal(count: int) -> FollowJointTrajectory.Goal:
     """Return a goal of that many points, each at its own position."""
     points = [
         JointTrajectoryPoint(
-            positions=[0.5 * index, -0.5 * index],
-            time_from_start=Duration(sec=index),
+            positions=[0.5 * index, -0.5 * index], time_from_start=Duration(sec=index)
         )
         for index in range(count)
     ]

@@ -91,11 +91,7 @@ def test_siblings_leave_room_for_the_labels_of_their_arrows():
 def test_messages_go_from_node_to_topic_to_node():
     graph = node_graph(TALK)
     shapes = {vertex.label: vertex.shape for vertex in graph.vertices}
-    assert shapes == {
-        "/talker": Shape.ELLIPSE,
-        "/listener": Shape.ELLIPSE,
-        "/chatter": Shape.BOX,
-    }
+    assert shapes == {"/talker": Shape.ELLIPSE, "/listener": Shape.ELLIPSE, "/chatter": Shape.BOX}
     assert graph.edges == (
         Edge("node /talker", "topic /chatter"),
         Edge("topic /chatter", "node /listener"),

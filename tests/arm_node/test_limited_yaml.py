@@ -3,12 +3,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from arm_node.limited_yaml import (
-    MAX_DEPTH,
-    YamlError,
-    load_yaml,
-    load_yaml_documents,
-)
+from arm_node.limited_yaml import MAX_DEPTH, YamlError, load_yaml, load_yaml_documents
 
 PLAIN = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),

@@ -10,11 +10,7 @@ from planar_robot import planar_model
 
 import arm_planning.planner
 from arm_planning.collision.motion_proof import Obstruction
-from arm_planning.constraints.constraints import (
-    JointConstraint,
-    MotionConstraints,
-    joint_goal,
-)
+from arm_planning.constraints.constraints import JointConstraint, MotionConstraints, joint_goal
 from arm_planning.constraints.evaluation import ConstraintEvaluator
 from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.pipeline import Timing, start_state, timed_and_proved

@@ -74,10 +74,7 @@ def test_a_goal_that_lasts_too_long_is_cancelled(mycobot: Simulation):
         ({"times": [1.0]}, "a trajectory has the keys times_s, positions"),
         ([1.0], "a trajectory is a JointTrajectory or a mapping"),
         (JointTrajectory([1.0, 2.0], [[0.0] * 6]), "2 times_s and 1 positions"),
-        (
-            JointTrajectory([1.0], [0.0] * 6),
-            r"needs the shape \(m, n\)",
-        ),
+        (JointTrajectory([1.0], [0.0] * 6), r"needs the shape \(m, n\)"),
         (JointTrajectory(["soon"], [[0.0] * 6]), "times_s of the trajectory must be numbers"),
     ],
 )

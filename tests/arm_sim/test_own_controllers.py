@@ -71,10 +71,7 @@ def test_hardware_of_a_user_s_own_is_simulated_as_in_the_node(servo_arm: None):
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        (
-            {"aim": 1.0},
-            "'pd_controller': unknown parameter aim; known: joints, target, p, d",
-        ),
+        ({"aim": 1.0}, "'pd_controller': unknown parameter aim; known: joints, target, p, d"),
         ({"joints": ["knee"]}, "parameter 'joints' is read-only"),
         ({"p": "much"}, "parameter 'p' must be of type float, not 'much'"),
     ],

@@ -63,8 +63,7 @@ def test_a_pose_may_be_written_in_several_ways(sim: Simulation, pose):
 
 
 @pytest.mark.parametrize(
-    "pose",
-    ["here", (1, 2), (0, 0, np.nan), np.zeros((4, 4)), np.diag([1, 1, -1, 1]), (0,) * 7],
+    "pose", ["here", (1, 2), (0, 0, np.nan), np.zeros((4, 4)), np.diag([1, 1, -1, 1]), (0,) * 7]
 )
 def test_a_bad_pose_gets_a_sentence(sim: Simulation, pose):
     with pytest.raises(CallError, match="a pose is x y z, x y z roll pitch yaw"):

@@ -15,10 +15,7 @@ from arm_viewer.rviz_config import SWITCHES, PageConfig, read_config, read_confi
 def test_the_arm_s_configuration_shows_links_frames_and_its_orbit():
     path = resolve_uri("package://arm_description/config/rviz/arm.rviz")
     config = read_config(path.read_bytes(), path.name)
-    assert {switch for switch, is_shown in config.shown.items() if is_shown} == {
-        "visual",
-        "frames",
-    }
+    assert {switch for switch, is_shown in config.shown.items() if is_shown} == {"visual", "frames"}
     assert config.fixed_frame == "world"
     assert config.remark == ""
     assert config.view is not None

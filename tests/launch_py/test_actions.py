@@ -90,9 +90,7 @@ def test_a_condition_that_is_not_a_boolean_is_refused(expand):
 def test_a_group_s_settings_stay_inside(expand):
     actions = [
         SetLaunchConfiguration("a", "outside"),
-        GroupAction(
-            [SetLaunchConfiguration("a", "inside"), LogInfo(msg=LaunchConfiguration("a"))],
-        ),
+        GroupAction([SetLaunchConfiguration("a", "inside"), LogInfo(msg=LaunchConfiguration("a"))]),
         LogInfo(msg=LaunchConfiguration("a")),
     ]
     assert texts(expand(actions)) == ["inside", "outside"]

@@ -10,10 +10,7 @@ from launch_py.launch_description_sources import read_launch_file
 @pytest.mark.parametrize(
     ("action", "sentence"),
     [
-        (
-            "Node(executable='a', on_exti=1)",
-            "Node takes no argument 'on_exti'; did you mean",
-        ),
+        ("Node(executable='a', on_exti=1)", "Node takes no argument 'on_exti'; did you mean"),
         (
             "LifecycleNode(name='n', executable='a', namspace='b')",
             "LifecycleNode takes no argument 'namspace'; did you mean 'namespace'",

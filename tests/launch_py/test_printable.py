@@ -5,12 +5,7 @@ import io
 import pytest
 
 from launch_py.command.command_line import run
-from launch_py.printable import (
-    printable,
-    printable_coloured,
-    printable_message,
-    without_colours,
-)
+from launch_py.printable import printable, printable_coloured, printable_message, without_colours
 from launch_py.screen import PlainScreen
 from launch_py.screen.log_folder import LogFolder
 from launch_py.screen.reporter import Reporter

@@ -115,10 +115,7 @@ def test_a_file_that_fails_leaves_no_modules_behind(ros_file):
             "launch.conditions has no 'Zebra' here; it has Condition, IfCondition, ",
         ),
         ("import launch\nlaunch.Nothing", "launch has no 'Nothing' here; it has Action, "),
-        (
-            "import launch_ros.zebra.other",
-            "there is no module 'launch_ros.zebra' here; ",
-        ),
+        ("import launch_ros.zebra.other", "there is no module 'launch_ros.zebra' here; "),
     ],
 )
 def test_a_missing_name_is_reported(ros_file, line, said):

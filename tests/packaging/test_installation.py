@@ -38,10 +38,7 @@ def test_every_data_file_is_there(installation):
         for name in files
         if not any(
             (installation.shares(package) / name).is_file()
-            for package in (
-                *installation.project.packages,
-                *installation.project.data_packages,
-            )
+            for package in (*installation.project.packages, *installation.project.data_packages)
         )
     ]
     assert missing == []

@@ -35,17 +35,13 @@ def launch(tmp_path: Path) -> Iterator[Callable[..., Program]]:
 
 
 @pytest.fixture(scope="module")
-def launch_for_file(
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Iterator[Callable[..., Program]]:
+def launch_for_file(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Program]]:
     """Start `arm launch ARGUMENTS`, which ends with the last test of the file at the latest."""
     yield from _launcher(tmp_path_factory.mktemp("launch"))
 
 
 @pytest.fixture(scope="class")
-def launch_for_class(
-    tmp_path_factory: pytest.TempPathFactory,
-) -> Iterator[Callable[..., Program]]:
+def launch_for_class(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Program]]:
     """Start `arm launch ARGUMENTS`, which ends with the last test of the class at the latest."""
     yield from _launcher(tmp_path_factory.mktemp("launch"))
 
@@ -116,10 +112,7 @@ class Collector:
             self.arrivals_s.clear()
 
     def wait_until(
-        self,
-        condition: Callable[[list], bool],
-        what: str,
-        timeout_s: float = WAIT_TIMEOUT_S,
+        self, condition: Callable[[list], bool], what: str, timeout_s: float = WAIT_TIMEOUT_S
     ) -> list:
         """Block until the condition holds for the messages so far; return a copy of them."""
         deadline = time.monotonic() + timeout_s
@@ -161,9 +154,7 @@ class Client:
 
         self.context = Context()
         rclpy.init(
-            context=self.context,
-            signal_handler_options=SignalHandlerOptions.NO,
-            domain_id=domain,
+            context=self.context, signal_handler_options=SignalHandlerOptions.NO, domain_id=domain
         )
         self.node = first_node(lambda: Node("test_client", context=self.context))
         self.executor = SingleThreadedExecutor(context=self.context)

@@ -159,12 +159,7 @@ class TestAsItStarts:
         fixed = {t.child_frame_id for m in static.wait_for(1) for t in m.transforms}
         assert {"base_link", "camera_link", "camera_optical_frame", "crawer_left"} <= fixed
         frames = moving.wait_for(2)[-1].transforms
-        assert {t.child_frame_id for t in frames} == {
-            "base_turn_rot",
-            "dyn2_r",
-            "dyn3_r",
-            "dyn4_r",
-        }
+        assert {t.child_frame_id for t in frames} == {"base_turn_rot", "dyn2_r", "dyn3_r", "dyn4_r"}
 
     def test_the_camera_sends_pictures_and_a_matching_camera_info(self, client):
         from sensor_msgs.msg import CameraInfo, Image

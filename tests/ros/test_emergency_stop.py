@@ -30,10 +30,7 @@ def robots(simulate):
         "/left": "joint_trajectory_controller/JointTrajectoryController",
         "/right": "position_controllers/JointGroupPositionController",
     }
-    interfaces = {
-        "command_interfaces": ["position"],
-        "state_interfaces": ["position", "velocity"],
-    }
+    interfaces = {"command_interfaces": ["position"], "state_interfaces": ["position", "velocity"]}
     parameters = {
         "arm_gazebo": settings,
         "/left/mover": {"joints": LEFT, **interfaces},

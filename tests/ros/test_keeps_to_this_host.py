@@ -206,11 +206,7 @@ def test_another_host_that_names_this_one_receives_and_moves_nothing(
     intruder = subprocess.run(
         there.inside([sys.executable, "-c", INTRUDER]),
         # The profile has it ask for 64 participants of the other host, not only for the first four.
-        env={
-            **_without_discovery(),
-            "ROS_STATIC_PEERS": HERE,
-            **shipped_profile(os.environ),
-        },
+        env={**_without_discovery(), "ROS_STATIC_PEERS": HERE, **shipped_profile(os.environ)},
         capture_output=True,
         text=True,
         timeout=TIMEOUT_S,

@@ -129,10 +129,7 @@ def test_a_force_torque_sensor_measures_the_weight_of_the_arm(lab, client):
 
 @pytest.mark.parametrize(
     ("topic", "info", "width"),
-    [
-        ("/front/depth_image", "/front/camera_info", 96),
-        ("/ranger", "/ranger/camera_info", 32),
-    ],
+    [("/front/depth_image", "/front/camera_info", 96), ("/ranger", "/ranger/camera_info", 32)],
 )
 def test_depth_is_in_metres_and_comes_with_its_camera_info(lab, client, topic, info, width):
     from sensor_msgs.msg import CameraInfo, Image

@@ -128,8 +128,7 @@ def test_contacts_are_markers_while_somebody_subscribes(simulator, client, latch
     assert forces.points[1].z > forces.points[0].z
     simulator.delete("crate")
     arrays.wait_until(
-        lambda m: {marker.action for marker in m[-1].markers} == {Marker.DELETE},
-        "nothing touches",
+        lambda m: {marker.action for marker in m[-1].markers} == {Marker.DELETE}, "nothing touches"
     )
 
 

@@ -281,8 +281,7 @@ def test_random_damage_is_reported_or_harmless(tmp_path, compression):
 
 
 @pytest.mark.parametrize(
-    ("content", "sentence"),
-    [(b"", "is not an MCAP file"), (b"a" * 500, "is not an MCAP file")],
+    ("content", "sentence"), [(b"", "is not an MCAP file"), (b"a" * 500, "is not an MCAP file")]
 )
 def test_a_file_that_is_not_mcap_is_reported(tmp_path, content, sentence):
     path = tmp_path / "x.mcap"

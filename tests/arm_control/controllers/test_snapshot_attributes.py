@@ -33,23 +33,9 @@ STATE = {
     "MecanumDriveController": DRIVE,
     "MultiInterfaceForwardCommandController": FORWARD,
     "ParallelGripperController": GRIPPER,
-    "PidController": {
-        "_last_error",
-        "_measured",
-        "_offered",
-        "_pid",
-        "is_feedforward_enabled",
-    },
+    "PidController": {"_last_error", "_measured", "_offered", "_pid", "is_feedforward_enabled"},
     "PositionGripperController": GRIPPER,
-    "TrajectoryTracker": {
-        "_active",
-        "_commanded",
-        "_goal",
-        "_next",
-        "_state",
-        "_writer",
-        "time_s",
-    },
+    "TrajectoryTracker": {"_active", "_commanded", "_goal", "_next", "_state", "_writer", "time_s"},
 }
 """What the snapshots of each class contain, beside what is the same for all chainable ones."""
 

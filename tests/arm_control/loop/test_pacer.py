@@ -82,10 +82,7 @@ def test_of_a_long_stall_only_the_cap_is_made_up_for() -> None:
     assert pacer.statistics.lost_s == pytest.approx(1.0 - CATCH_UP_S)
 
 
-@given(
-    stalls_s=st.lists(st.floats(0.0, 0.3), max_size=50),
-    factor=st.sampled_from([0.5, 1.0, 4.0]),
-)
+@given(stalls_s=st.lists(st.floats(0.0, 0.3), max_size=50), factor=st.sampled_from([0.5, 1.0, 4.0]))
 def test_ticks_never_run_ahead_of_the_clock(stalls_s: list[float], factor: float) -> None:
     clock = ManualClock()
     pacer = Pacer(0.01, real_time_factor=factor, clock=clock)

@@ -327,9 +327,7 @@ def test_interfaces_are_listed_with_the_type_of_the_description() -> None:
     assert {i.name: i.data_type for i in states}["j0/velocity"] == "double"
 
 
-def test_a_component_with_is_async_gets_a_warning(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
+def test_a_component_with_is_async_gets_a_warning(caplog: pytest.LogCaptureFixture) -> None:
     manager, hardware = visited(0, is_async=True)
     (component,) = manager.list_hardware_components()
     assert component.is_async

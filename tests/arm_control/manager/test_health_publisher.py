@@ -76,9 +76,7 @@ def test_a_period_of_any_length_can_be_taken_back(
     assert node.published.wait(PATIENCE_S), "one report after the other"
 
 
-def test_a_stop_does_not_wait_for_the_period(
-    make_health: Callable[[FakeNode], HealthPublisher],
-):
+def test_a_stop_does_not_wait_for_the_period(make_health: Callable[[FakeNode], HealthPublisher]):
     node = FakeNode(float("inf"))
     health = make_health(node)
     assert node.asked.wait(PATIENCE_S)

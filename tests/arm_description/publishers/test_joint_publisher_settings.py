@@ -62,10 +62,7 @@ def test_dependent_joints_by_joint():
         dependent_joints__j1__offset=0.5,
         dependent_joints__j2__parent="j1",
     )
-    assert settings.dependent_joints == {
-        "j1": Mimic("j0", -2.0, 0.5),
-        "j2": Mimic("j1", 1.0, 0.0),
-    }
+    assert settings.dependent_joints == {"j1": Mimic("j0", -2.0, 0.5), "j2": Mimic("j1", 1.0, 0.0)}
 
 
 def test_parameters_of_others_are_ignored():
@@ -91,16 +88,8 @@ def test_an_empty_list_of_sources_may_come_as_nothing():
         ("delta", float("inf"), "delta must be a finite number, not inf"),
         ("zeros__j0", float("nan"), "zeros.j0 must be a finite number, not nan"),
         ("zeros__j0", True, "zeros.j0 must be a finite number, not True"),
-        (
-            "dependent_joints__j1__factor",
-            2.0,
-            "j1.parent must be the name of a joint",
-        ),
-        (
-            "dependent_joints__j1__parent",
-            3,
-            "j1.parent must be the name of a joint, not 3",
-        ),
+        ("dependent_joints__j1__factor", 2.0, "j1.parent must be the name of a joint"),
+        ("dependent_joints__j1__parent", 3, "j1.parent must be the name of a joint, not 3"),
         ("dependent_joints__j1__foo", 1, "a dependent joint has parent, factor and offset"),
         ("dependent_joints__parent", "j0", "a dependent joint has parent, factor and offset"),
     ],

@@ -12,8 +12,7 @@ FILE = Path("/somewhere/my arm/50%?>.urdf")
 
 
 @pytest.mark.parametrize(
-    "text",
-    [ROBOT, f"<?xml version='1.0'?>\n{ROBOT}", f"<!-- <?xml?> -->\n{ROBOT}", f"\n {ROBOT}"],
+    "text", [ROBOT, f"<?xml version='1.0'?>\n{ROBOT}", f"<!-- <?xml?> -->\n{ROBOT}", f"\n {ROBOT}"]
 )
 def test_the_source_is_read_as_it_was_written(text):
     stamped = with_source(text, FILE, [Path("/a"), Path("/b c")])

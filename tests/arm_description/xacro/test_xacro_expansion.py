@@ -164,10 +164,7 @@ def test_an_error_in_a_macro_names_the_macro_its_file_and_its_line(tmp_path):
         "  <xacro:if value='1'><link name='${nothing}'/></xacro:if></xacro:macro>\n"
         "<xacro:macro name='hand' params=''><xacro:finger n='1'/></xacro:macro>",
     )
-    path = write(
-        tmp_path / "outer.xacro",
-        "<xacro:include filename='inner.xacro'/>\n<xacro:hand/>",
-    )
+    path = write(tmp_path / "outer.xacro", "<xacro:include filename='inner.xacro'/>\n<xacro:hand/>")
     assert refusal(path) == (
         f"cannot expand {path}: {inner}, line 4: name 'nothing' is not defined; in macro: finger, "
         "in macro: hand"

@@ -7,12 +7,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from arm_control.hardware.info import (
-    HardwareInfo,
-    InterfaceInfo,
-    JointInfo,
-    parse_hardware_info,
-)
+from arm_control.hardware.info import HardwareInfo, InterfaceInfo, JointInfo, parse_hardware_info
 from arm_gazebo.hardware.simulated_hardware import SimulatedHardware
 from arm_gazebo.hardware.simulated_sensors import SensorStates
 from arm_gazebo.physics.physics import Physics

@@ -84,5 +84,5 @@ def test_nodes_of_a_controllers_file_go_below_the_namespace(tmp_path):
         "/**: {a: {ros__parameters: {joints: [j]}}}\n"
     )
     assert list(controllers_in_namespace("left", path)) == [
-        *("/left/controller_manager", "/elsewhere/a", "/there/a", "/left/**/a"),
+        *("/left/controller_manager", "/elsewhere/a", "/there/a", "/left/**/a")
     ]

@@ -27,15 +27,9 @@ def refusal(text, path=None, limit=LIMIT):
 @pytest.mark.parametrize(
     ("text", "asked"),
     [
-        (
-            mjcf('<hfield name="h" nrow="20000" ncol="20000"/>'),
-            "8000 MB, most of it for hfield",
-        ),
+        (mjcf('<hfield name="h" nrow="20000" ncol="20000"/>'), "8000 MB, most of it for hfield"),
         (mjcf('<texture name="t" type="2d" width="20000" height="20000"/>'), "texture 't'"),
-        (
-            mjcf('<texture name="t" builtin="flat" width="9000"/>'),
-            "3888 MB, most of it for",
-        ),
+        (mjcf('<texture name="t" builtin="flat" width="9000"/>'), "3888 MB, most of it for"),
         (mjcf(outside='<sensor><user name="u" dim="2000000000"/></sensor>'), "user 'u'"),
         (mjcf(outside='<size memory="100G"/>'), "107374 MB"),
         (mjcf(outside='<size nuser_geom="50000000"/>'), "for <size> (line 1)"),

@@ -34,9 +34,7 @@ LENSES = {
     "pinhole": replace(WIDE, intrinsics=(700.0, 600.0, 300.0, 250.0, 0.0)),
     "skewed": replace(WIDE, intrinsics=(600.0, 600.0, 320.0, 240.0, 40.0)),
     "cushion": replace(
-        WIDE,
-        intrinsics=(700.0, 600.0, 300.0, 250.0, 0.0),
-        distortion=(0.1, 0.0, 0.0, 0.0, 0.0),
+        WIDE, intrinsics=(700.0, 600.0, 300.0, 250.0, 0.0), distortion=(0.1, 0.0, 0.0, 0.0, 0.0)
     ),
     "barrel": replace(
         WIDE, intrinsics=(450.0, 450.0, 330.0, 235.0, 0.0), distortion=(-0.3, 0.09, 0.0, 0.0, 0.0)

@@ -75,9 +75,7 @@ def second_opinion(text):
     root = etree.fromstring(text)
     etree.strip_elements(root, "mimic")
     return yourdfpy.URDF(
-        yourdfpy.URDF._parse_robot(xml_element=root),
-        load_meshes=False,
-        load_collision_meshes=False,
+        yourdfpy.URDF._parse_robot(xml_element=root), load_meshes=False, load_collision_meshes=False
     )
 
 

@@ -78,8 +78,7 @@ def test_a_negative_moment_is_repaired_and_reported():
 
 
 @pytest.mark.parametrize(
-    "nonsense",
-    [inertial(0.01, 0.01, 0.01, iyz=1e308), inertial(1e308, 1e308, 0.01, ixy=1e308)],
+    "nonsense", [inertial(0.01, 0.01, 0.01, iyz=1e308), inertial(1e308, 1e308, 0.01, ixy=1e308)]
 )
 def test_moments_that_overflow_are_repaired_and_reported(nonsense):
     inertia = repair_inertia(nonsense)

@@ -181,12 +181,7 @@ def test_a_merged_model_has_no_separate_name(world):
         "<include>", "<include merge='1'>"
     )
     _, data, report = world(
-        model(
-            "room",
-            STATIC,
-            merged,
-            link("vase").replace("<pose>", '<pose relative_to="top">'),
-        )
+        model("room", STATIC, merged, link("vase").replace("<pose>", '<pose relative_to="top">'))
     )
     assert data.body("room::top").xpos == pytest.approx([0, 0, 1.8])
     assert data.body("room::vase").xpos == pytest.approx([0, 0, 1.8])

@@ -201,9 +201,7 @@ class Picking:
             "gripper", lambda goal: GripperRequest(goal, [position], [max_effort])
         )
         return SimpleNamespace(
-            position=result.state.position,
-            reached_goal=result.reached_goal,
-            stalled=result.stalled,
+            position=result.state.position, reached_goal=result.reached_goal, stalled=result.stalled
         )
 
     def pause(self, seconds: float) -> None:

@@ -34,12 +34,7 @@ class Kept:
         source = ModelSource(robot.simulation.timing.step_s)
         self.editor = WorldEditor(robot.simulation, lambda f: f(), robot.hardware, [], source)
         self.restored = 0
-        self.snapshots = SnapshotStore(
-            robot.state,
-            self.editor,
-            lambda: "table",
-            self._count,
-        )
+        self.snapshots = SnapshotStore(robot.state, self.editor, lambda: "table", self._count)
 
     def _count(self) -> None:
         self.restored += 1
@@ -147,10 +142,7 @@ def test_a_snapshot_with_other_controllers_is_refused(kept, tmp_path):
 
 @pytest.mark.parametrize(
     ("content", "words"),
-    [
-        (b"", "is not a snapshot of arm sim save"),
-        (b"arm snapshot 1\nnonsense", "is damaged"),
-    ],
+    [(b"", "is not a snapshot of arm sim save"), (b"arm snapshot 1\nnonsense", "is damaged")],
 )
 def test_other_files_are_refused(kept, tmp_path, content, words):
     file = tmp_path / "a.snapshot"

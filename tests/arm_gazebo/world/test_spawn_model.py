@@ -142,11 +142,7 @@ def test_a_urdf_with_a_world_link_is_static():
         ("<sdf/>", Refusal.UNREADABLE, "LoadWorld"),
         ("<sdf><world name='w'/></sdf>", Refusal.UNREADABLE, "LoadWorld"),
         ("<mujoco/>", Refusal.UNREADABLE, "one top-level body"),
-        (
-            "<mujoco><worldbody><body/><body/></worldbody></mujoco>",
-            Refusal.UNREADABLE,
-            "thing_2",
-        ),
+        ("<mujoco><worldbody><body/><body/></worldbody></mujoco>", Refusal.UNREADABLE, "thing_2"),
         (
             "<mujoco><worldbody><body><freejoint/></body></worldbody></mujoco>",
             Refusal.UNREADABLE,

@@ -20,9 +20,7 @@ def execute(goal: ServerGoalHandle) -> ParallelGripperCommand.Result:
     goal.succeed()
     return ParallelGripperCommand.Result(
         state=JointState(
-            name=command.name,
-            position=[max(wanted_m, OBJECT_WIDTH_M)],
-            effort=command.effort,
+            name=command.name, position=[max(wanted_m, OBJECT_WIDTH_M)], effort=command.effort
         ),
         stalled=stalled,
         reached_goal=not stalled,

@@ -27,11 +27,7 @@ from sensor_msgs.msg import JointState
 modules = sorted(name for name in sys.modules if name.startswith(("sensor_msgs.", "numpy")))
 JointState()
 print(json.dumps([*modules, *sorted(n for n in sys.modules if n.startswith("std_msgs.msg."))]))"""
-    assert said(code) == [
-        "sensor_msgs.msg",
-        "sensor_msgs.msg._joint_state",
-        "std_msgs.msg._header",
-    ]
+    assert said(code) == ["sensor_msgs.msg", "sensor_msgs.msg._joint_state", "std_msgs.msg._header"]
 
 
 def test_every_package_of_the_wheels_has_the_same_classes():

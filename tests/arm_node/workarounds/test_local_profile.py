@@ -21,11 +21,7 @@ def profile(tmp_path: Path) -> Path:
 
 
 def environment(profile: Path | str, **more: str) -> dict[str, str]:
-    return {
-        profile_variable(): str(profile),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        **more,
-    }
+    return {profile_variable(): str(profile), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", **more}
 
 
 def test_localhost_is_left_to_the_other_profile(profile: Path) -> None:

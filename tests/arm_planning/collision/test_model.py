@@ -14,15 +14,7 @@ from arm_planning.errors import MoveItErrorCode, PlanningError
 from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.objects import AttachedBody, CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
-from arm_planning.scene.shapes import (
-    Box,
-    Cone,
-    Cylinder,
-    Plane,
-    Shape,
-    Sphere,
-    TriangleMesh,
-)
+from arm_planning.scene.shapes import Box, Cone, Cylinder, Plane, Shape, Sphere, TriangleMesh
 
 
 def collision(shape: str, xyz: str = "0 0 0") -> str:
@@ -129,10 +121,7 @@ def test_a_real_robots_states_are_counted_as_each_is_judged():
 
 def test_a_contact_says_what_where_and_how_deep():
     (contact,) = slider(thing("box1", Box((0.2, 0.2, 0.2)), 2.0, 0.0, 0.0)).contacts([0.803])
-    assert (contact.first_kind, contact.second_kind) == (
-        BodyKind.ROBOT_LINK,
-        BodyKind.WORLD_OBJECT,
-    )
+    assert (contact.first_kind, contact.second_kind) == (BodyKind.ROBOT_LINK, BodyKind.WORLD_OBJECT)
     assert contact.depth_m == pytest.approx(0.003, abs=1e-6)
     assert contact.position == pytest.approx((1.9015, 0, 0), abs=1e-5)
     assert contact.normal == pytest.approx((1, 0, 0), abs=1e-5)
@@ -337,10 +326,7 @@ def test_a_turn_of_a_continuous_joint_comes_back():
         link("arm", collision("<box size='0.1 0.1 0.1'/>", "1 0 0")),
         joint("spin", "base", "arm", kind="continuous", axis="0 0 1", limits=None),
     )
-    model = CollisionModel(
-        model_of(urdf),
-        scene(thing("post", Sphere(0.1), 0.0, 1.0, 0.0)),
-    )
+    model = CollisionModel(model_of(urdf), scene(thing("post", Sphere(0.1), 0.0, 1.0, 0.0)))
     assert pairs(model, 0.0) == set()
     assert pairs(model, pi / 2) == {("arm", "post")}
     assert pairs(model, pi / 2 - 4 * pi) == {("arm", "post")}

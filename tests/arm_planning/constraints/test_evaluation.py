@@ -68,7 +68,7 @@ def q(turn: float, bend: float = 0.0) -> np.ndarray:
 def test_a_joint_may_be_up_to_its_tolerances_away():
     bend = evaluator(JointConstraint("bend", 0.5, above=0.1, below=0.2))
     assert [bend.satisfied(q(0.0, at)) for at in (0.29, 0.3, 0.6, 0.61)] == [
-        *(False, True, True, False),
+        *(False, True, True, False)
     ]
 
 

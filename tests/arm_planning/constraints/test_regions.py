@@ -14,8 +14,7 @@ from arm_planning.scene.shapes import Cone, Plane, TriangleMesh
 CORNERS = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 CUBE = TriangleMesh(
-    CORNERS.copy(),
-    np.array([t for a, b, c, d in FACES for t in ((a, b, c), (a, c, d))]),
+    CORNERS.copy(), np.array([t for a, b, c, d in FACES for t in ((a, b, c), (a, c, d))])
 )
 SHAPES = {
     "box": (Box((2.0, 4.0, 6.0)), [4.0, 6.0, 3.0], 5.0),

@@ -292,10 +292,7 @@ NAN = float("nan")
     ("target", "message"),
     [
         (RigidTransform((NAN, 0.0, 0.0)), "position of the target is not finite: nan, 0, 0"),
-        (
-            RigidTransform((0.0, 1e300, 0.0)),
-            r"is beyond 1e\+06 m: 0, 1e\+300, 0",
-        ),
+        (RigidTransform((0.0, 1e300, 0.0)), r"is beyond 1e\+06 m: 0, 1e\+300, 0"),
         (RigidTransform(rotation=(0.0, 0.0, 0.0, 0.0)), "no unit quaternion: its norm is 0;"),
         (RigidTransform(rotation=(0.0, 0.0, 1.0, 1.0)), "no unit quaternion: its norm is 1.414;"),
         (RigidTransform(rotation=(0.0, 0.0, NAN, 1.0)), "no unit quaternion: its norm is nan;"),

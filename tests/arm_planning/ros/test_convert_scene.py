@@ -10,9 +10,7 @@ from moveit_msgs.msg import (
     ObjectColor,
     PlanningSceneComponents,
 )
-from moveit_msgs.msg import (
-    PlanningScene as SceneMessage,
-)
+from moveit_msgs.msg import PlanningScene as SceneMessage
 from planar_robot import planar_model
 from shape_msgs.msg import Mesh, MeshTriangle, Plane, SolidPrimitive
 

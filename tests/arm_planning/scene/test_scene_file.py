@@ -113,16 +113,10 @@ def test_a_mesh_is_read_again():
     [
         ("", "line 1: the file ends where '*' or '.' should be"),
         ("name\n", "line 2: the file ends where '*' or '.' should be"),
-        (
-            "name\nbox",
-            "line 2: 'box' is neither '*', which starts an object, nor '.'",
-        ),
+        ("name\nbox", "line 2: 'box' is neither '*', which starts an object, nor '.'"),
         (FILE.replace("0.2 0.05 0.5", "0.2 wide 0.5"), "line 7: 'wide' is not a side of a box"),
         (FILE.replace("0.2 0.05 0.5", "0.2 nan 0.5"), "line 7: 'nan' is not a side of a box"),
-        (
-            FILE.replace("sphere", "torus"),
-            f"line 19: 'torus' is not a shape; {SHAPE_NAMES}",
-        ),
+        (FILE.replace("sphere", "torus"), f"line 19: 'torus' is not a shape; {SHAPE_NAMES}"),
         (
             FILE.replace("\n0.1\n", "\n-0.1\n"),
             "line 29: object 'ball' has a sphere with a size that is not positive: -0.1",

@@ -177,8 +177,7 @@ def test_an_object_that_is_attached_and_detached_stays_where_it_is(changes: list
         scene = after(scene, change)
     for name in scene.objects:
         held = after(
-            scene,
-            SceneChange(attached=(AttachedChange(ObjectChange(ADD, name), "hand"),)),
+            scene, SceneChange(attached=(AttachedChange(ObjectChange(ADD, name), "hand"),))
         )
         assert place(held, name) == pytest.approx(place(scene, name), abs=1e-9)
         freed = after(held, SceneChange(attached=(AttachedChange(ObjectChange(REMOVE, name)),)))

@@ -58,12 +58,7 @@ def test_it_starts_and_ends_at_rest_in_the_first_and_last_way_point():
 
 
 @settings(max_examples=40)
-@given(
-    st.integers(0, 2**32 - 1),
-    st.integers(1, 7),
-    st.integers(2, 8),
-    st.floats(1e-4, 1.0),
-)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 7), st.integers(2, 8), st.floats(1e-4, 1.0))
 def test_limits_hold_every_millisecond(seed, joints, count, tolerance):
     rng = np.random.default_rng(seed)
     path = rng.uniform(-1.0, 1.0, (count, joints)) * 10.0 ** rng.uniform(-2.0, 0.3, joints)

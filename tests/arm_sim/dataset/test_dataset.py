@@ -275,10 +275,7 @@ def add(writer: DatasetWriter, *episodes: list) -> None:
 def test_an_episode_that_differs_is_refused_and_nothing_is_left(
     tmp_path: Path, first: list, second: list, problem: str
 ):
-    with (
-        pytest.raises(CallError, match=problem),
-        DatasetWriter(tmp_path / "demo", "arm") as writer,
-    ):
+    with pytest.raises(CallError, match=problem), DatasetWriter(tmp_path / "demo", "arm") as writer:
         add(writer, first, second)
     assert list(tmp_path.iterdir()) == []
 

@@ -3,14 +3,7 @@
 import pytest
 from fake_channel import FakeBrowser, FakeChannel
 
-from arm_viewer.calls.call import (
-    Callee,
-    CallKind,
-    CallState,
-    EndCall,
-    OpenForm,
-    PlaceCall,
-)
+from arm_viewer.calls.call import Callee, CallKind, CallState, EndCall, OpenForm, PlaceCall
 from arm_viewer.calls.form import FieldKind, FormField
 from arm_viewer.errors import BrowserMessageError
 from arm_viewer.panels.calls import Calls

@@ -8,21 +8,8 @@ from fake_channel import FakeChannel
 from arm_viewer.channel import Message
 from arm_viewer.errors import BrowserMessageError
 from arm_viewer.panels.time_bar import TimeBar, bar_fields, clock_fields, free_name, run_request
-from arm_viewer.requests import (
-    ResetRun,
-    SetPlaying,
-    SetSpeed,
-    SnapshotDeed,
-    StepRun,
-    UseSnapshot,
-)
-from arm_viewer.snapshot import (
-    ControlAnswer,
-    NamedSnapshot,
-    RunStatus,
-    SimulationTime,
-    Snapshot,
-)
+from arm_viewer.requests import ResetRun, SetPlaying, SetSpeed, SnapshotDeed, StepRun, UseSnapshot
+from arm_viewer.snapshot import ControlAnswer, NamedSnapshot, RunStatus, SimulationTime, Snapshot
 
 NOW_S = 100.0
 SAVED = NamedSnapshot("before", "1.000 s in the world empty")

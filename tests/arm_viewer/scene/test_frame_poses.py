@@ -9,11 +9,7 @@ from arm_description.transforms import quaternion_from_rpy
 from arm_description.urdf.description import RobotDescription
 from arm_description.urdf.parser import parse_urdf
 from arm_node.rigid_transform import RigidTransform
-from arm_viewer.scene.frames import (
-    assumed_transforms,
-    frame_poses,
-    unknown_joints,
-)
+from arm_viewer.scene.frames import assumed_transforms, frame_poses, unknown_joints
 from arm_viewer.snapshot import Transform
 
 HALF = math.sqrt(0.5)

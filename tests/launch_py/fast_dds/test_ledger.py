@@ -70,10 +70,7 @@ def test_the_files_of_other_dead_processes_stay(shm_folder, segment):
     end(ours)
     end(other)
     ledger.sweep()
-    assert {p.name for p in shm_folder.iterdir()} == {
-        "fastrtps_2",
-        "fastrtps_2_el",
-    }
+    assert {p.name for p in shm_folder.iterdir()} == {"fastrtps_2", "fastrtps_2_el"}
 
 
 def test_a_port_that_a_sender_makes_anew_is_hidden_from_other_users(shm_folder, segment):

@@ -8,12 +8,7 @@ from launch_py import EmitEvent, LogInfo, RegisterEventHandler
 from launch_py.errors import LaunchFileError
 from launch_py.events import matches_action
 from launch_py.plan.readiness import LogLine
-from launch_py.ros import (
-    ChangeState,
-    LifecycleNode,
-    LifecycleTransition,
-    OnStateTransition,
-)
+from launch_py.ros import ChangeState, LifecycleNode, LifecycleTransition, OnStateTransition
 from launch_py.ros.lifecycle import matches_node_name
 from launch_py.testing import FakeChild
 

@@ -35,11 +35,7 @@ def generate_launch_description():
         parameters=[{"robot_description": text}],
     )
     window = Node(
-        package="rviz2",
-        executable="rviz2",
-        name="rviz2",
-        output="log",
-        condition=IfCondition(gui),
+        package="rviz2", executable="rviz2", name="rviz2", output="log", condition=IfCondition(gui)
     )
     broadcaster = Node(
         package="controller_manager", executable="spawner", arguments=["joint_state_broadcaster"]

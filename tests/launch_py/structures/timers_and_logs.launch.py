@@ -1,13 +1,7 @@
 # Delayed starts, messages, a bag that is recorded, and a handler of lines that ends the launch.
 # starts: driver ros2
 # later: servo
-from launch.actions import (
-    EmitEvent,
-    ExecuteProcess,
-    LogInfo,
-    RegisterEventHandler,
-    TimerAction,
-)
+from launch.actions import EmitEvent, ExecuteProcess, LogInfo, RegisterEventHandler, TimerAction
 from launch.event_handlers import OnProcessIO, OnProcessStart, OnShutdown
 from launch.events import Shutdown
 from launch.substitutions import LocalSubstitution

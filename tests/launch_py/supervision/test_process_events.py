@@ -4,13 +4,7 @@ import re
 
 import pytest
 
-from launch_py import (
-    ExecuteProcess,
-    LogInfo,
-    RegisterEventHandler,
-    RestartPolicy,
-    Shutdown,
-)
+from launch_py import ExecuteProcess, LogInfo, RegisterEventHandler, RestartPolicy, Shutdown
 from launch_py.conditions import IfCondition
 from launch_py.errors import SubstitutionError
 from launch_py.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart, OnShutdown

@@ -22,11 +22,7 @@ def test_a_program_is_found_by_name_or_path(folder):
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
-    [
-        ("slep", "; did you mean 'sleep'\\?$"),
-        ("rozzz", "[^?]$"),
-    ],
+    ("name", "said"), [("slep", "; did you mean 'sleep'\\?$"), ("rozzz", "[^?]$")]
 )
 def test_a_missing_program_is_reported_with_a_hint(folder, name, said):
     with pytest.raises(NotFoundError, match=f"^no program '{name}' on PATH or in .*{said}"):

@@ -4,12 +4,7 @@ import os
 
 import pytest
 
-from launch_py import (
-    ExecuteProcess,
-    LaunchDescription,
-    LogInfo,
-    RegisterEventHandler,
-)
+from launch_py import ExecuteProcess, LaunchDescription, LogInfo, RegisterEventHandler
 from launch_py.errors import NotFoundError, UnavailableError
 from launch_py.event_handlers import OnProcessExit
 from launch_py.launch_description import expand_description

@@ -20,7 +20,7 @@ LINES = {
         r"^\trequired state interfaces:\n\t\tj0/position$",
     ],
     "arm control list_controller_types": [
-        r"^joint_state_broadcaster/JointStateBroadcaster +controller_interface::",
+        r"^joint_state_broadcaster/JointStateBroadcaster +controller_interface::"
     ],
     "arm topic info -v /joint_states": [
         r"^Publisher count: 1\n\nNode name: joint_state_broadcaster\nNode namespace: /$",

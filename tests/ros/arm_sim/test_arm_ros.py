@@ -11,9 +11,7 @@ from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
 from arm_sim.errors import BenchError
 
-pytestmark = [
-    pytest.mark.arm_ros(arguments={"camera": "none", "real_time_factor": 4}),
-]
+pytestmark = pytest.mark.arm_ros(arguments={"camera": "none", "real_time_factor": 4})
 
 GOAL = [1.0, 0.5, 0.1, 0.5]
 CONTROLLER = "position_controller"

@@ -7,11 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from arm_control import (
-    ControllerContext,
-    ControllerManager,
-    ControllerManagerError,
-)
+from arm_control import ControllerContext, ControllerManager, ControllerManagerError
 from arm_control.controllers.forward_command.controller import (
     EffortGroupParameters,
     ForwardCommandController,
@@ -219,11 +215,7 @@ def test_the_interface_of_a_group_is_fixed(
         (JointGroupPositionController, PositionGroupParameters(), "joints"),
         (ForwardCommandController, ForwardCommandParameters(), "joints"),
         (ForwardCommandController, ForwardCommandParameters(("j0",)), "interface_name"),
-        (
-            MultiInterfaceForwardCommandController,
-            MultiInterfaceForwardCommandParameters(),
-            "joint",
-        ),
+        (MultiInterfaceForwardCommandController, MultiInterfaceForwardCommandParameters(), "joint"),
         (
             MultiInterfaceForwardCommandController,
             MultiInterfaceForwardCommandParameters("j0"),

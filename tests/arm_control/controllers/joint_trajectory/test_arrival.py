@@ -5,11 +5,7 @@ from typing import Any
 
 import pytest
 
-from arm_control.controllers.joint_trajectory.goals import (
-    ErrorCode,
-    GoalOutcome,
-    JointTolerance,
-)
+from arm_control.controllers.joint_trajectory.goals import ErrorCode, GoalOutcome, JointTolerance
 
 MakeRig = Callable[..., Any]
 POINTS = [(0.5, [0.0, 0.6, 0.0])]

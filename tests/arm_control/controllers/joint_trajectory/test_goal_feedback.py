@@ -52,10 +52,7 @@ class TestRefusal:
         assert not rig.sink.results, "the caller ends the goal, not the sink"
 
     def test_is_logged(
-        self,
-        make_rig: MakeRig,
-        make_request: Callable[..., Any],
-        caplog: pytest.LogCaptureFixture,
+        self, make_rig: MakeRig, make_request: Callable[..., Any], caplog: pytest.LogCaptureFixture
     ):
         make_rig().controller.check_goal(make_request([]))
 

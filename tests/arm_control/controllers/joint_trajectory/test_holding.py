@@ -113,9 +113,7 @@ class TestDeceleration:
         self, make_rig: MakeRig, robot_description: Callable[..., str]
     ):
         rig = make_rig(
-            constraints__decelerate_on_cancel=True,
-            robot_description=robot_description(),
-            **BRAKES,
+            constraints__decelerate_on_cancel=True, robot_description=robot_description(), **BRAKES
         )
         rig.goal(MOVE)
         rig.run(0.5)
@@ -153,9 +151,7 @@ class TestDeceleration:
         self, make_rig: MakeRig, robot_description: Callable[..., str]
     ):
         rig = make_rig(
-            constraints__decelerate_on_cancel=True,
-            robot_description=robot_description(),
-            **BRAKES,
+            constraints__decelerate_on_cancel=True, robot_description=robot_description(), **BRAKES
         )
         rig.goal(MOVE)
         rig.run(0.5)

@@ -126,10 +126,7 @@ def test_hands_over_in_the_middle_of_a_goal(
 
 @pytest.mark.parametrize(
     "parameters",
-    [
-        replace(PARAMETERS, state_interfaces=()),
-        replace(PARAMETERS, action_monitor_rate=0.0),
-    ],
+    [replace(PARAMETERS, state_interfaces=()), replace(PARAMETERS, action_monitor_rate=0.0)],
 )
 def test_says_why_it_is_not_configured(
     bench: Any,

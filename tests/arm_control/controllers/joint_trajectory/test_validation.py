@@ -117,10 +117,7 @@ def test_a_subset_is_taken_where_that_is_allowed():
 
 @pytest.mark.parametrize(
     "fields",
-    [
-        {"positions": []},
-        {"positions": [], "velocities": [], "accelerations": [1.0, 1.0, 1.0]},
-    ],
+    [{"positions": []}, {"positions": [], "velocities": [], "accelerations": [1.0, 1.0, 1.0]}],
 )
 def test_missing_positions_message_accepted(fields: dict[str, Any]):
     assert find_fault(with_first(**fields), INTEGRATING) is None
@@ -226,10 +223,7 @@ def test_the_first_fault_is_reported(
 ):
     worst = TrajectoryRequest(
         JOINTS,
-        [
-            TrajectoryPoint(0.5, [np.nan]),
-            TrajectoryPoint(0.5, [1.0], [1.0] * 3, (), [1.0]),
-        ],
+        [TrajectoryPoint(0.5, [np.nan]), TrajectoryPoint(0.5, [1.0], [1.0] * 3, (), [1.0])],
         stamp_s=1.0,
     )
 

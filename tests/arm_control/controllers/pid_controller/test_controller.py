@@ -153,11 +153,7 @@ def test_a_nan_leaves_a_reference_as_it_is(running: PidBench) -> None:
     ],
 )
 def test_references_that_make_no_sense_are_refused(
-    running: PidBench,
-    names: list[str],
-    values: list[float],
-    derivatives: list[float],
-    says: str,
+    running: PidBench, names: list[str], values: list[float], derivatives: list[float], says: str
 ) -> None:
     assert says in running.pid.offer(names, values, derivatives)
     assert np.isnan(running.commands_after()).all()

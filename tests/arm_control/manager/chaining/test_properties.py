@@ -31,9 +31,7 @@ def build(new_chain: Any) -> Any:
         for i in sorted(range(COUNT), key=lambda i: (i % 2, i)):
             commands = tuple(f"c{j}/x/position" for j in followers(shape, i))
             chain.link(
-                f"c{i}",
-                commands=commands or (f"j{i % 4}/position",),
-                references=("x/position",),
+                f"c{i}", commands=commands or (f"j{i % 4}/position",), references=("x/position",)
             )
         return chain
 

@@ -154,9 +154,7 @@ def test_a_controller_that_reads_all_states_keeps_no_other_from_stopping(
     assert chain.states()["every"] == "active"
 
 
-def test_a_reader_of_all_states_starts_after_the_only_exporter_failed_to_stop(
-    chain: Any,
-) -> None:
+def test_a_reader_of_all_states_starts_after_the_only_exporter_failed_to_stop(chain: Any) -> None:
     exporter = chain.link("filter", states=("j0/position",), exported=("sum/position",))
     every = chain.broadcaster("every")
     chain.switch("filter")
@@ -213,10 +211,7 @@ def test_only_the_fallbacks_of_whom_fails_take_over(chain: Any) -> None:
     for name in ("spare_low", "spare_high"):
         chain.link(name, commands=("j0/position",), references=("x/position",))
     low = chain.link(
-        "low",
-        commands=("j0/position",),
-        references=("x/position",),
-        fallback_names=("spare_low",),
+        "low", commands=("j0/position",), references=("x/position",), fallback_names=("spare_low",)
     )
     chain.link(
         "high",
@@ -238,10 +233,7 @@ def test_only_the_fallbacks_of_whom_fails_take_over(chain: Any) -> None:
 def test_a_fallback_stops_the_whole_chain_that_claims_its_interfaces(pair: Any) -> None:
     pair.forwarder("spare", ("j0", "j1"))
     work = pair.link(
-        "work",
-        commands=("j1/position",),
-        references=("x/position",),
-        fallback_names=("spare",),
+        "work", commands=("j1/position",), references=("x/position",), fallback_names=("spare",)
     )
     assert pair.switch("low high work").ok
     work.fails = True

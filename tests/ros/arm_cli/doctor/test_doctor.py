@@ -62,7 +62,7 @@ def test_foreign_publishers_and_mismatches(look, client):
     found = look(
         lambda f: (
             names in f["QoS"].sentence and "/test_client" in f["duplicate publishers"].sentence
-        ),
+        )
     )
     assert found["QoS"].severity is Severity.WARNING
     assert "est effort publisher" in found["QoS"].sentence

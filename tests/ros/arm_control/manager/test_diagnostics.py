@@ -167,9 +167,7 @@ def test_the_level_of_a_logger_can_be_read_and_set(
     (result,) = client.call(SetLoggerLevels, set_levels, request).results
     assert result.successful
     answer = client.call(
-        GetLoggerLevels,
-        f"/{node}/get_logger_levels",
-        GetLoggerLevels.Request(names=[name]),
+        GetLoggerLevels, f"/{node}/get_logger_levels", GetLoggerLevels.Request(names=[name])
     )
     assert answer.levels[0].level == LoggerLevel.LOG_LEVEL_FATAL
     request.levels[0].level = LoggerLevel.LOG_LEVEL_INFO

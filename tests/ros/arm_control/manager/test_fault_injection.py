@@ -154,9 +154,7 @@ def test_failing_hardware_stops_its_controllers_and_comes_back(
     from lifecycle_msgs.msg import State
 
     answer = control.call(
-        "set_hardware_component_state",
-        name="HardwareInterface",
-        target_state=State(label="active"),
+        "set_hardware_component_state", name="HardwareInterface", target_state=State(label="active")
     )
     assert (answer.ok, answer.state.label) == (True, "active")
     assert control.switch(["bystander"]).ok

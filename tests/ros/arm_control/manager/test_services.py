@@ -193,11 +193,7 @@ def test_hardware_can_be_deactivated_and_activated_by_id_or_label(control: Any) 
     from lifecycle_msgs.msg import State
 
     def set_state(name: str, **state: Any) -> Any:
-        return control.call(
-            "set_hardware_component_state",
-            name=name,
-            target_state=State(**state),
-        )
+        return control.call("set_hardware_component_state", name=name, target_state=State(**state))
 
     control.start("position_controller")
     inactive = set_state("HardwareInterface", id=2)
@@ -239,10 +235,7 @@ def test_a_loop_that_is_stuck_lets_a_switch_time_out_and_lists_are_answered(
         (component,) = control.call("list_hardware_components").component
     finally:
         manager.tell("unblock")
-    assert (answer.ok, answer.message) == (
-        False,
-        "Switch controller timed out after 0.2 seconds!",
-    )
+    assert (answer.ok, answer.message) == (False, "Switch controller timed out after 0.2 seconds!")
     assert states == {"position_controller": "inactive"}
     assert component.state.label == "active"
     assert control.states() == {"position_controller": "inactive"}

@@ -60,10 +60,7 @@ def test_plan_and_execute_moves_the_arm_to_the_goal(planning, at_the_start, turn
     assert ended.result.planned_trajectory.joint_trajectory.points
     assert planning.positions()[TURN] == pytest.approx(0.6, abs=NEAR)
     goal.feedback.wait_until(lambda states: "IDLE" in states, "the state IDLE")
-    assert [state for state in goal.feedback.messages if state != "IDLE"] == [
-        "PLANNING",
-        "MONITOR",
-    ]
+    assert [state for state in goal.feedback.messages if state != "IDLE"] == ["PLANNING", "MONITOR"]
 
 
 def test_plan_only_leaves_the_arm_where_it_is(planning, at_the_start, turn_to):

@@ -84,10 +84,7 @@ def measured(client: Any) -> Callable[[str], list[float]]:
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_goal_is_reached(
-    control: Any,
-    sender_to: Callable[[str], Any],
-    measured: Callable[[str], list[float]],
-    name: str,
+    control: Any, sender_to: Callable[[str], Any], measured: Callable[[str], list[float]], name: str
 ) -> None:
     control.start(name)
     send = sender_to(name)

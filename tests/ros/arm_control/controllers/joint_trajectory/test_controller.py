@@ -57,13 +57,7 @@ def time_of(message: Any) -> float:
     ids=lambda value: value if value.startswith("/") else "",
 )
 def test_end_points_of_an_inactive_one_are_those_of_a_real_one(
-    loaded: Any,
-    client: Any,
-    topic: str,
-    kind: str,
-    type_: str,
-    reliability: str,
-    durability: str,
+    loaded: Any, client: Any, topic: str, kind: str, type_: str, reliability: str, durability: str
 ) -> None:
     read = getattr(client.node, f"get_{kind}_info_by_topic")
     # The name of its node arrives later than the end point.
