@@ -1,5 +1,6 @@
 """Checks what tests expect of joints, and describes what happened instead."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import groupby
 
@@ -111,45 +112,84 @@ class TargetCheck:
         return f"it has been at rest since {times_s[moving[-1]]:.3f} s"
 
 
-def expect_reached(
-    history: StateHistory,
-    run_until: Callable[[Callable[[], bool], float], bool],
-    target: Target,
-    within_s: float,
-    tolerance: float,
-    hold_s: float,
-    circumstances: Callable[[], Iterable[str]],
-) -> None:
-    """Raise AssertionError if joints do not reach a target.
+class JointAssertions(ABC):
+    """The assertions about joints, of a simulation or of what a launch has started.
 
-    `run_until` lets time pass until a condition holds, but at most so many simulated seconds;
-    `target`, `tolerance` and `hold_s` are those of `TargetCheck`. `circumstances` returns more
-    sentences for the message.
+    Attributes:
+        history: the states of the joints since the test began.
     """
-    __tracebackhide__ = True
-    reaching = TargetCheck(history, target, tolerance, hold_s)
-    if not run_until(reaching, within_s):
-        raise AssertionError("\n".join([reaching.explain(within_s), *circumstances()]))
 
+    history: StateHistory
 
-def expect_within(
-    history: StateHistory,
-    limits: Mapping[str, Limit | None],
-    circumstances: Callable[[], Iterable[str]],
-) -> None:
-    """Raise AssertionError if a value was beyond its bounds.
+    @abstractmethod
+    def run_until(self, condition: Callable[[], bool], timeout_s: float) -> bool:
+        """Let time pass until a condition holds, or so many simulated seconds; return whether."""
 
-    None is for a quantity without bounds; `circumstances` returns more sentences for the message.
-    """
-    __tracebackhide__ = True
-    found = [
-        sentence
-        for quantity, limit in limits.items()
-        if limit is not None
-        for sentence in violations(history, quantity, limit)
-    ]
-    if found:
-        raise AssertionError("\n".join([*found, *circumstances()]))
+    @abstractmethod
+    def _circumstances(self) -> Iterable[str]:
+        """Return sentences about the circumstances, such as faults and contacts."""
+
+    def _states(self) -> StateHistory:
+        """Return the history as soon as the joints are known."""
+        return self.history
+
+    def assert_reaches(
+        self,
+        target: Target,
+        *,
+        within_s: float = 5.0,
+        tolerance: float = 0.01,
+        hold_s: float = 0.0,
+    ) -> None:
+        """Run until the joints are at their targets, all at the same time.
+
+        Args:
+            target: positions by joint, or of all joints in their order, in rad or m.
+            within_s: simulated seconds to wait at most.
+            tolerance: largest distance of each joint from its target, in rad or m.
+            hold_s: how long they must stay there, in simulated seconds.
+
+        Raises:
+            AssertionError: they do not get there; the message says what they do instead.
+            CallError, UnknownNameError: this is not a target for these joints.
+        """
+        __tracebackhide__ = True
+        reaching = TargetCheck(self._states(), target, tolerance, hold_s)
+        if not self.run_until(reaching, within_s):
+            raise AssertionError("\n".join([reaching.explain(within_s), *self._circumstances()]))
+
+    def assert_never_exceeds(
+        self,
+        *,
+        position: Limit | None = None,
+        velocity: Limit | None = None,
+        effort: Limit | None = None,
+    ) -> None:
+        """Check all states since the test began against bounds.
+
+        Each bound is a number that the magnitude must not exceed, or a tuple of the lowest and the
+        highest value; for all joints, or a mapping by joint.
+
+        Args:
+            position: in rad or m.
+            velocity: in rad/s or m/s.
+            effort: of the drives, in N m or N.
+
+        Raises:
+            AssertionError: a value was beyond its bound, or not a number; the message says when.
+            CallError, UnknownNameError: these are not bounds of these joints.
+        """
+        __tracebackhide__ = True
+        limits = {"position": position, "velocity": velocity, "effort": effort}
+        history = self._states()
+        found = [
+            sentence
+            for quantity, limit in limits.items()
+            if limit is not None
+            for sentence in violations(history, quantity, limit)
+        ]
+        if found:
+            raise AssertionError("\n".join([*found, *self._circumstances()]))
 
 
 def violations(history: StateHistory, quantity: str, limit: Limit) -> list[str]:

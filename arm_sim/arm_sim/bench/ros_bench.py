@@ -16,7 +16,7 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
-from arm_sim.bench.expectations import Limit, Target, expect_reached, expect_within
+from arm_sim.bench.expectations import JointAssertions
 from arm_sim.bench.history import StateHistory
 from arm_sim.bench.processes import LoggedProcess
 from arm_sim.bench.ros_connection import WAIT_S, Messages, MessageT, RosConnection
@@ -36,7 +36,7 @@ FINISH_TIMEOUT_S = 5.0
 LOG, PLOT = "launch.log", "joints.png"
 
 
-class RosBench:
+class RosBench(JointAssertions):
     """A running launch, a node beside it, and the history of its joints. The test's thread.
 
     Attributes:
@@ -206,7 +206,7 @@ class RosBench:
         Raises:
             AssertionError: joint states no longer arrive.
         """
-        history = self._known_history()
+        history = self._states()
         began_s, seen, heard_s = self.time_s, -1, time.monotonic()
         while True:
             if len(history) != seen:
@@ -220,36 +220,6 @@ class RosBench:
                     f"no joint states for {WAIT_S:g} s; the last are of {self.time_s:.3f} s"
                 )
             time.sleep(0.002)
-
-    # Assertions
-
-    def assert_reaches(
-        self,
-        target: Target,
-        *,
-        within_s: float = 5.0,
-        tolerance: float = 0.01,
-        hold_s: float = 0.0,
-    ) -> None:
-        """Wait until the joints are at their targets; see `BenchSimulation.assert_reaches`."""
-        __tracebackhide__ = True
-        self._known_history()
-        expect_reached(
-            self.history, self.run_until, target, within_s, tolerance, hold_s, self._circumstances
-        )
-
-    def assert_never_exceeds(
-        self,
-        *,
-        position: Limit | None = None,
-        velocity: Limit | None = None,
-        effort: Limit | None = None,
-    ) -> None:
-        """Check all joint states so far; see `BenchSimulation.assert_never_exceeds`."""
-        __tracebackhide__ = True
-        self._known_history()
-        limits = {"position": position, "velocity": velocity, "effort": effort}
-        expect_within(self.history, limits, self._circumstances)
 
     def _circumstances(self) -> Iterator[str]:
         return map(str, self.faults.log.spans)
@@ -306,8 +276,7 @@ class RosBench:
             raise GoalError(text, code=getattr(result, "error_code", None))
         return result
 
-    def _known_history(self) -> StateHistory:
-        """Return the history as soon as it has states."""
+    def _states(self) -> StateHistory:
         if not self._first_names.wait(WAIT_S):
             raise AssertionError(f"no joint states within {WAIT_S:g} s")
         return self.history

@@ -18,7 +18,7 @@ from arm_gazebo.run.run import SimulationRun
 from arm_gazebo.world.contacts import bodies_of
 from arm_gazebo.world.entity import WORLD_FRAME
 from arm_sim.bench.configuration import configuration_key
-from arm_sim.bench.expectations import Limit, Target, expect_reached, expect_within
+from arm_sim.bench.expectations import JointAssertions
 from arm_sim.bench.history import StateHistory
 from arm_sim.bench.touches import Touch, TouchLog
 from arm_sim.errors import CallError
@@ -33,7 +33,7 @@ RECORDING = "test.run"
 SHOWN_TOUCHES = 8
 
 
-class BenchSimulation(Simulation):
+class BenchSimulation(Simulation, JointAssertions):
     """A `Simulation` that remembers what happened, for the assertions and reports of a test.
 
     Attributes:
@@ -83,56 +83,6 @@ class BenchSimulation(Simulation):
 
     # Assertions
 
-    def assert_reaches(
-        self,
-        target: Target,
-        *,
-        within_s: float = 5.0,
-        tolerance: float = 0.01,
-        hold_s: float = 0.0,
-    ) -> None:
-        """Run until the joints are at their targets, all at the same time.
-
-        Args:
-            target: positions by joint, or of all joints in their order, in rad or m.
-            within_s: simulated seconds to wait at most.
-            tolerance: largest distance of each joint from its target, in rad or m.
-            hold_s: how long they must stay there, in simulated seconds.
-
-        Raises:
-            AssertionError: they do not get there; the message says what they do instead.
-            CallError, UnknownNameError: this is not a target for these joints.
-        """
-        __tracebackhide__ = True
-        expect_reached(
-            self.history, self.run_until, target, within_s, tolerance, hold_s, self._circumstances
-        )
-
-    def assert_never_exceeds(
-        self,
-        *,
-        position: Limit | None = None,
-        velocity: Limit | None = None,
-        effort: Limit | None = None,
-    ) -> None:
-        """Check all states since the test began against bounds.
-
-        Each bound is a number that the magnitude must not exceed, or a tuple of the lowest and the
-        highest value; for all joints, or a mapping by joint.
-
-        Args:
-            position: in rad or m.
-            velocity: in rad/s or m/s.
-            effort: of the drives, in N m or N.
-
-        Raises:
-            AssertionError: a value was beyond its bound, or not a number; the message says when.
-            CallError, UnknownNameError: these are not bounds of these joints.
-        """
-        __tracebackhide__ = True
-        limits = {"position": position, "velocity": velocity, "effort": effort}
-        expect_within(self.history, limits, self._circumstances)
-
     def assert_no_contact(self, name: str | None = None, *, allow: Sequence[str] = ()) -> None:
         """Check that something has touched nothing since the test began.
 
@@ -164,7 +114,6 @@ class BenchSimulation(Simulation):
         return frozenset(model.body(number).name for number in numbers)
 
     def _circumstances(self) -> Iterator[str]:
-        """Return sentences about the circumstances, such as faults and contacts."""
         for touch in _shown(self.touches.present):
             yield f"meanwhile {touch}"
         yield from map(str, self.faults.log.spans)
