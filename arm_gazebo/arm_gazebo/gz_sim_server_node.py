@@ -20,6 +20,7 @@ from arm_node.task import run_task
 if TYPE_CHECKING:
     from rclpy.node import Node
 
+    from arm_description.urdf.robot import Pose
     from arm_node.process import NodeProcess
 
 NODE = "gz_sim"
@@ -52,6 +53,7 @@ def wait_for_robot(node: "Node", process: "NodeProcess") -> Sequence[Path] | Non
     """Answer `spawn_entity` until a URDF arrives; return its parameter files, None at the end."""
     from simulation_interfaces.srv import SpawnEntity
 
+    from arm_description.urdf.robot import Pose
     from arm_gazebo.ros.world_convert import matrix_of
 
     robots: list[Sequence[Path]] = []
@@ -61,7 +63,7 @@ def wait_for_robot(node: "Node", process: "NodeProcess") -> Sequence[Path] | Non
         try:
             if "<robot" not in text:
                 raise GazeboError("the world waits for its robot; spawn other entities after it")
-            robots.append(robot_parameters(text, pose_of(matrix_of(request.initial_pose.pose))))
+            robots.append(robot_parameters(text, Pose.of(matrix_of(request.initial_pose.pose))))
         except (GazeboError, DescriptionError) as error:
             response.result.result = SpawnEntity.Response.RESOURCE_PARSE_ERROR
             response.result.error_message = str(error)
@@ -80,14 +82,7 @@ def wait_for_robot(node: "Node", process: "NodeProcess") -> Sequence[Path] | Non
     return robots[0]
 
 
-def pose_of(matrix: Any) -> list[float]:
-    """Return x, y, z, roll, pitch, yaw of a transform (4, 4)."""
-    from arm_description.transforms import rpy_from_rotation
-
-    return [*map(float, matrix[:3, 3]), *map(float, rpy_from_rotation(matrix[:3, :3]))]
-
-
-def robot_parameters(description: str, pose: Sequence[float]) -> list[Path]:
+def robot_parameters(description: str, pose: "Pose") -> list[Path]:
     """Write the parameter files of the simulation of one robot; return their paths.
 
     The controllers' file is the one that the description names for gz_ros2_control. No controller
@@ -110,7 +105,7 @@ def robot_parameters(description: str, pose: Sequence[float]) -> list[Path]:
     settings = {
         **setup.parameters(),
         "base": "free",
-        "pose": str(list(pose)),
+        "pose": str([*pose.xyz, *pose.rpy]),
         "hold_joints": has_hardware(description),
     }
     content: dict[str, Any] = {SIMULATION: {"ros__parameters": settings}}

@@ -12,6 +12,7 @@ from arm_description.errors import MimicCycleError, UrdfError
 from arm_description.urdf.joint_type import JointType
 from arm_node.frozen import frozen
 from arm_node.names import listing
+from arm_node.rigid_transform import rpy_from_rows
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,6 +27,12 @@ class Pose:
 
     xyz: Vector = (0.0, 0.0, 0.0)
     rpy: Vector = (0.0, 0.0, 0.0)
+
+    @classmethod
+    def of(cls, matrix: "NDArray[np.float64]") -> "Pose":
+        """Return the pose of a (4, 4) homogeneous transform."""
+        x, y, z = matrix[:3, 3].tolist()
+        return cls((x, y, z), rpy_from_rows(matrix[:3, :3].tolist()))
 
     def matrix(self) -> "NDArray[np.float64]":
         """Return the (4, 4) homogeneous transform."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from arm_control.hardware.info import HardwareInfo
 from arm_description.resources import ResourceFinder
-from arm_description.transforms import rotation_from_rpy
+from arm_description.transforms import wxyz_from_rpy
 from arm_description.urdf.robot import Joint, Mimic, Pose, Robot
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.errors import ModelError
@@ -289,9 +289,8 @@ def add_cameras(
             )
         if spec.camera(camera.name) is not None:
             raise ModelError(f"the world already has a camera '{camera.name}'; rename one of them")
-        orientation, quaternion = np.zeros(4), np.zeros(4)
-        mujoco.mju_mat2Quat(orientation, rotation_from_rpy(camera.rpy).ravel())
-        mujoco.mju_mulQuat(quaternion, orientation, FORWARD_TO_MUJOCO)
+        quaternion = np.zeros(4)
+        mujoco.mju_mulQuat(quaternion, wxyz_from_rpy(camera.rpy), FORWARD_TO_MUJOCO)
         mounted = bodies[camera.link].add_camera(
             name=camera.name,
             pos=camera.xyz,

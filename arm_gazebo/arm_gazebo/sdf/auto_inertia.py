@@ -13,11 +13,11 @@ from arm_description.urdf.robot import (
     Inertial,
     Link,
     Mesh,
+    Pose,
     Sphere,
 )
 from arm_gazebo.errors import MeshError
 from arm_gazebo.mesh.library import MeshLibrary
-from arm_gazebo.sdf.frames import pose_of
 from arm_node.frozen import frozen
 
 DEFAULT_DENSITY = 1000.0
@@ -57,7 +57,7 @@ def auto_inertial(link: Link, auto: AutoInertia, meshes: MeshLibrary) -> Inertia
     scale = 1.0 if auto.mass is None else auto.mass / mass
     rotation = np.zeros(9)
     mujoco.mju_quat2Mat(rotation, model.body_iquat[1])
-    pose = pose_of(transform(rotation.reshape(3, 3), model.body_ipos[1]))
+    pose = Pose.of(transform(rotation.reshape(3, 3), model.body_ipos[1]))
     ixx, iyy, izz = (model.body_inertia[1] * scale).tolist()
     return Inertial(mass * scale, pose, (ixx, 0.0, 0.0, iyy, 0.0, izz))
 

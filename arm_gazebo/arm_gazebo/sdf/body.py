@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_description.transforms import wxyz_from_rpy
-from arm_description.urdf.robot import Link, Robot
+from arm_description.urdf.robot import Link, Pose, Robot
 from arm_gazebo.build_report import BuildOutcome, BuildReport
 from arm_gazebo.mesh.library import MeshLibrary
 from arm_gazebo.robot.body_tree import BodyTree, TreeOptions
@@ -21,7 +21,6 @@ from arm_gazebo.robot.link_geometry import (
     set_friction,
 )
 from arm_gazebo.sdf.auto_inertia import auto_inertial
-from arm_gazebo.sdf.frames import pose_of
 from arm_gazebo.sdf.model import DEFAULT_INERTIAL, SdfModel, SdfPlane
 
 WORLD_MASKS = CollisionMasks(WORLD_CONTYPE, WORLD_CONTYPE)
@@ -45,7 +44,7 @@ def add_model(
     """
     default = mujoco.MjSpec().default
     geometry = _SdfGeometry(model, meshes, strict, report)
-    place = pose_of(pose @ model.frame)
+    place = Pose.of(pose @ model.frame)
     options = TreeOptions(spec.option.timestep, default, not model.static, place, model.weightless)
     robot = model.robot if model.static else _with_inertia(model, meshes, report)
     bodies = BodyTree(spec, robot, geometry, options, report).add()

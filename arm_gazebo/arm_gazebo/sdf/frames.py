@@ -6,8 +6,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.transforms import rpy_from_rotation
-from arm_description.urdf.robot import Pose
 from arm_gazebo.sdf.element import SdfElement, SdfPose
 from arm_node.names import listing
 
@@ -111,9 +109,3 @@ class SdfFrames:
 def _default_frame(element: SdfElement) -> str:
     """Return the frame that an element's pose is relative to by default."""
     return element.text("child") if element.tag == "joint" else element.attribute("attached_to")
-
-
-def pose_of(matrix: NDArray[np.float64]) -> Pose:
-    """Return a (4, 4) transform as translation and roll, pitch, yaw."""
-    x, y, z = matrix[:3, 3].tolist()
-    return Pose((x, y, z), rpy_from_rotation(matrix[:3, :3]))

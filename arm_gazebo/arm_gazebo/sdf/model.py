@@ -31,7 +31,7 @@ from arm_gazebo.robot.gazebo_tags import gazebo_color
 from arm_gazebo.robot.link_geometry import DEFAULT_FRICTION
 from arm_gazebo.sdf.auto_inertia import DEFAULT_DENSITY, AutoInertia
 from arm_gazebo.sdf.element import SdfElement
-from arm_gazebo.sdf.frames import SdfFrames, pose_of
+from arm_gazebo.sdf.frames import SdfFrames
 from arm_gazebo.sdf.rigid_bodies import RigidBody, rigid_bodies
 from arm_gazebo.sdf.scope import Matrix, SdfScope
 from arm_node.frozen import frozen
@@ -138,7 +138,7 @@ class _LinkReader:
 
     def pose(self) -> Pose:
         """Return the pose of the link in the rigid body."""
-        return pose_of(self._model_frame @ self._frames.matrix(self._link))
+        return Pose.of(self._model_frame @ self._frames.matrix(self._link))
 
     def link(self) -> Link:
         """Return the link without its planes."""
@@ -185,7 +185,7 @@ class _LinkReader:
                 upright = np.eye(4)
                 upright[:3, :3] = _rotation_to(normal / np.linalg.norm(normal))
                 frame = self._frames.matrix(self._link) @ self._frames.within(self._link, shape)
-                pose = pose_of(self._model_frame @ frame @ upright)
+                pose = Pose.of(self._model_frame @ frame @ upright)
                 x, y = plane.numbers("size", 2, (1.0, 1.0))
                 if kind == "visual":
                     yield SdfPlane(pose, (x, y), _color(shape))
@@ -199,7 +199,7 @@ class _LinkReader:
                 yield shape, geometry
 
     def _pose(self, part: SdfElement) -> Pose:
-        return pose_of(self._frames.within(self._link, part))
+        return Pose.of(self._frames.within(self._link, part))
 
     def _inertial(self) -> Inertial | None:
         inertial = self._link.child("inertial")

@@ -12,7 +12,6 @@ from arm_gazebo.build_report import BuildReport
 from arm_gazebo.mesh.library import MeshLibrary
 from arm_gazebo.sdf.body import add_model, add_plane
 from arm_gazebo.sdf.element import SdfElement, unread_findings
-from arm_gazebo.sdf.frames import pose_of
 from arm_gazebo.sdf.model import SdfPlane, read_model
 from arm_gazebo.sdf.scope import NestedModel, SdfScope, is_sun
 
@@ -126,7 +125,7 @@ def _add_light(spec: mujoco.MjSpec, light: SdfElement) -> None:
     kind = light.attribute("type")
     if kind not in KINDS:
         raise light.error(f"has the type '{kind}', which is not one of {', '.join(KINDS)}")
-    pose = pose_of(light.pose().matrix)
+    pose = Pose.of(light.pose().matrix)
     x, y, z = light.numbers("direction", 3, DOWN)
     if not (x or y or z):
         raise light.error("has a direction of zero length")
