@@ -6,7 +6,7 @@ import sys
 from arm_cli.arguments import JSON, Argument, Exclusive, Flag, verb
 from arm_cli.errors import CommandUsageError, NoSuchNameError
 from arm_cli.interface_types import KINDS, Comments, InterfaceIndex, describe_type, load_class
-from arm_cli.output import print_json, say, say_document
+from arm_cli.output import print_json, say, say_answer, say_document
 from arm_cli.word_completion import interface_names, interface_packages
 from arm_node.names import describe_known
 
@@ -51,20 +51,14 @@ def package(options: argparse.Namespace) -> None:
         known = describe_known(package, packages)
         raise NoSuchNameError(f"no interface package {package!r}; {known}")
     names = [type_.full_name for type_ in index.types(wanted_kinds(options), package)]
-    if options.json:
-        print_json(names)
-    else:
-        say(*names)
+    say_answer(options, names, names)
 
 
 @verb(*ONLY, JSON)
 def packages(options: argparse.Namespace) -> None:
     """Print the names of the packages."""
     names = InterfaceIndex().packages(wanted_kinds(options))
-    if options.json:
-        print_json(names)
-    else:
-        say(*names)
+    say_answer(options, names, names)
 
 
 @verb(

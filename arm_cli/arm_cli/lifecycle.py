@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from arm_cli.arguments import JSON, Argument, Flag, verb
 from arm_cli.errors import NoSuchNameError, UnansweredError
-from arm_cli.output import complain, print_json, say
+from arm_cli.output import complain, say, say_answer
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect
 from arm_node.names import describe_known
@@ -66,12 +66,7 @@ def nodes(options: argparse.Namespace) -> None:
         from arm_cli.ros.graph import Graph
 
         names = [node.full_name for node in managed_nodes(Graph(session), options.hidden)]
-    if options.json:
-        print_json(names)
-    elif options.count_nodes:
-        say(len(names))
-    else:
-        say(*names)
+    say_answer(options, names, [len(names)] if options.count_nodes else names)
 
 
 @verb(
@@ -102,12 +97,9 @@ def get(options: argparse.Namespace) -> None:
                 complain(f"arm lifecycle get: {error}")
                 continue
             states[node.full_name] = answer.current_state
-    if options.json:
-        print_json({name: state.label for name, state in states.items()})
-        return
-    for name, state in states.items():
-        prefix = "" if options.node_name else f"{name}: "
-        say(f"{prefix}{state.label} [{state.id}]")
+    shown = {name: f"{state.label} [{state.id}]" for name, state in states.items()}
+    lines = shown.values() if options.node_name else map(": ".join, shown.items())
+    say_answer(options, {name: state.label for name, state in states.items()}, lines)
 
 
 @verb(*NODE, Flag("-a", "--all", help="include those that its state does not allow"))

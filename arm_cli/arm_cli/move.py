@@ -1,14 +1,13 @@
 """`arm move`: plan a motion of the running robot, and execute it."""
 
 import argparse
-import json
 import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from arm_cli.arguments import JSON, Argument, Exclusive, Flag, finite_number, positive_number, verb
 from arm_cli.errors import CommandUsageError, NoSuchNameError
-from arm_cli.output import complain, say
+from arm_cli.output import complain, say_answer
 from arm_cli.ros.connection import connect
 from arm_node.environment import PLANNING_PACKAGES
 
@@ -101,10 +100,7 @@ def move(options: argparse.Namespace) -> None:
         result = client.move(_request(group, goal, options), timeout_s)
     if result.error_code.message:
         complain(f"arm move: {result.error_code.message}")
-    if options.json:
-        say(json.dumps(_document(result)))
-    else:
-        say(_summary(result, group))
+    say_answer(options, _document(result), [_summary(result, group)])
 
 
 def _group(model: "PlanningModel", name: str) -> "JointGroup":

@@ -3,9 +3,11 @@
 Names and strings come from other processes, so all output is made safe for a terminal here.
 """
 
+import argparse
 import math
 import shutil
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +56,14 @@ def print_json(value: Any) -> None:
         # Escape with JSON's own escapes; the json module does not escape DEL.
         text = json.dumps(_finite(value)).replace("\x7f", "\\u007f")
     print(text)
+
+
+def say_answer(options: argparse.Namespace, value: Any, lines: Iterable[object]) -> None:
+    """Print what a verb found: with --json as JSON, else in lines."""
+    if options.json:
+        print_json(value)
+    else:
+        say(*lines)
 
 
 def colour(code: int, text: str) -> str:

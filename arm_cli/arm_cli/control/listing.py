@@ -16,7 +16,7 @@ from arm_cli.control.manager import (
     state_colour,
 )
 from arm_cli.graph_files import write_picture
-from arm_cli.output import colour, print_json, say, say_coloured
+from arm_cli.output import colour, print_json, say, say_answer, say_coloured
 from arm_node.drawing import Digraph, Edge, Shape, Vertex
 from arm_node.printable import printable
 
@@ -94,11 +94,8 @@ def list_controller_types(options: argparse.Namespace) -> None:
     """Print the types and their base classes."""
     with ask_manager(options) as manager:
         types = manager.controller_types()
-    if options.json:
-        print_json([{"type": name, "base_class": base} for name, base in types])
-        return
-    for name, base in types:
-        say(f"{name:<{TYPE_WIDTH}} {base}")
+    rows = [{"type": name, "base_class": base} for name, base in types]
+    say_answer(options, rows, (f"{name:<{TYPE_WIDTH}} {base}" for name, base in types))
 
 
 @verb(Flag("-v", "--verbose", help="also show state interfaces and data types"), JSON, *MANAGER)

@@ -39,7 +39,7 @@ from arm_cli.doctor.running import (
 )
 from arm_cli.errors import ArmCliError, CommandUsageError
 from arm_cli.names import this_domain
-from arm_cli.output import colour, print_json, say, say_coloured
+from arm_cli.output import colour, say_answer, say_coloured
 from arm_cli.ros.connection import connect
 from arm_node.printable import printable
 
@@ -78,10 +78,8 @@ def doctor(options: argparse.Namespace) -> int:
         if not options.json:
             say_coloured(_line(finding))
     healthy = is_healthy(findings)
-    if options.json:
-        print_json({"healthy": healthy, "findings": [asdict(finding) for finding in findings]})
-    else:
-        say(_summary(findings))
+    report = {"healthy": healthy, "findings": [asdict(finding) for finding in findings]}
+    say_answer(options, report, [_summary(findings)])
     return 0 if healthy else EXIT_UNHEALTHY
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from arm_cli.arguments import JSON, Argument, Completer, Flag, VerbFunction, verb
 from arm_cli.interface_types import InterfaceIndex
 from arm_cli.names import absolute_name, is_hidden
-from arm_cli.output import complain, print_json, say, say_document
+from arm_cli.output import complain, print_json, say, say_answer, say_document
 from arm_cli.ros import completers
 from arm_cli.ros.connection import connect, settled_graph
 from arm_cli.word_completion import message_names
@@ -91,13 +91,10 @@ def list_entities(kind: EntityKind, options: argparse.Namespace) -> None:
         if getattr(options, "verbose", False) and not (options.json or options.count):
             _print_endpoints(graph, found)
             return
-    if options.json:
-        print_json([{"name": name, "types": types} for name, types in found.items()])
-    elif options.count:
-        say(len(found))
-    else:
-        for name, types in found.items():
-            say(f"{name} [{', '.join(types)}]" if options.show_types else name)
+    rows = [{"name": name, "types": types} for name, types in found.items()]
+    with_types = (f"{name} [{', '.join(types)}]" for name, types in found.items())
+    shown = with_types if options.show_types else found
+    say_answer(options, rows, [len(found)] if options.count else shown)
 
 
 def find_entities(kind: EntityKind, options: argparse.Namespace) -> None:
@@ -273,14 +270,9 @@ def node_list(options: argparse.Namespace) -> None:
     """Print the nodes' names."""
     with settled_graph() as graph:
         names = [node.full_name for node in graph.nodes(options.hidden)]
-    if options.json:
-        print_json(names)
-    elif options.count_nodes:
-        say(len(names))
-    else:
-        if len(set(names)) < len(names):
-            complain("WARNING: several nodes share a name; only one of them is visible")
-        say(*names)
+    if len(set(names)) < len(names) and not (options.json or options.count_nodes):
+        complain("WARNING: several nodes share a name; only one of them is visible")
+    say_answer(options, names, [len(names)] if options.count_nodes else names)
 
 
 @verb(

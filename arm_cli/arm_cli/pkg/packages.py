@@ -8,7 +8,7 @@ from typing import Any
 
 from arm_cli.arguments import JSON, Argument, Flag, verb
 from arm_cli.errors import NoSuchNameError
-from arm_cli.output import print_json, say, say_document
+from arm_cli.output import say, say_answer, say_document
 from arm_cli.run import packages as packages_with_executables
 from arm_node.names import describe_known
 from arm_node.user_file import read_text
@@ -27,10 +27,7 @@ def package_names(**_: Any) -> list[str]:
 def list_packages(options: argparse.Namespace) -> None:
     """Print the names of the packages."""
     names = Packages(os.environ).names()
-    if options.json:
-        print_json(names)
-    else:
-        say(*names)
+    say_answer(options, names, names)
 
 
 @verb(
@@ -67,11 +64,9 @@ def executables(options: argparse.Namespace) -> None:
         if wanted not in known:
             raise NoSuchNameError(f"no package {wanted!r}; {describe_known(wanted, known)}")
         found = [(package, name) for package, name in found if package == wanted]
-    if options.json:
-        print_json([{"package": package, "executable": name} for package, name in found])
-        return
-    for package, name in found:
-        say(_path(packages, package, name) if options.full_path else f"{package} {name}")
+    rows = [{"package": package, "executable": name} for package, name in found]
+    lines = (_path(packages, *each) if options.full_path else " ".join(each) for each in found)
+    say_answer(options, rows, lines)
 
 
 def _path(packages: Packages, package: str, name: str) -> Path:

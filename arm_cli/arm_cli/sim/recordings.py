@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from arm_cli.arguments import Argument, Flag, positive_number, verb
 from arm_cli.errors import ArmCliError, StoppedError, UnansweredError
-from arm_cli.output import complain, print_json, say
+from arm_cli.output import complain, print_json, say, say_answer
 from arm_cli.ros.connection import connect
 from arm_cli.sim.simulation import NAMESPACE, ask_simulation
 
@@ -140,10 +140,9 @@ def _replayed(
     def say_input(item: "RecordedInput") -> None:
         where = " ".join(filter(None, (item.controller, item.method)))
         words = " ".join(filter(None, (where, _brief(item))))
-        if options.json:
-            print_json({"time_s": run.simulation.time_s, "input": words, "refused": item.raised})
-        else:
-            say(f"{run.simulation.time_s:.3f} s: {words}{_REFUSED * item.raised}")
+        time_s = run.simulation.time_s
+        found = {"time_s": time_s, "input": words, "refused": item.raised}
+        say_answer(options, found, [f"{time_s:.3f} s: {words}{_REFUSED * item.raised}"])
 
     progress = _Progress(run, bag) if options.json else None
 

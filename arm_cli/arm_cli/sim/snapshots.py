@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from arm_cli.arguments import JSON, Argument, verb
-from arm_cli.output import complain, print_json, say
+from arm_cli.output import complain, say, say_answer
 from arm_cli.sim.simulation import NAMESPACE, ask_simulation
 
 SUFFIX = ".snapshot"
@@ -40,11 +40,7 @@ def list_snapshots(options: argparse.Namespace) -> None:
     with ask_simulation(options.namespace, must_run=True) as simulation:
         found = simulation.ask("GetAvailableWorlds", "list_snapshots").worlds
     named = {snapshot.world_resource.uri: snapshot.description for snapshot in found}
-    if options.json:
-        print_json(named)
-        return
-    for name, description in named.items():
-        say(f"{name}: {description}")
+    say_answer(options, named, map(": ".join, named.items()))
 
 
 @verb(_snapshot("a name"), NAMESPACE)

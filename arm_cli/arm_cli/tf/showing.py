@@ -9,7 +9,7 @@ from pathlib import Path
 from arm_cli.arguments import JSON, Argument, Flag, positive_number, verb
 from arm_cli.errors import CommandUsageError, NoSuchNameError
 from arm_cli.graph_files import has_graphviz, write_picture
-from arm_cli.output import print_json, say, say_document
+from arm_cli.output import print_json, say, say_answer, say_document
 from arm_cli.ros.connection import connect
 from arm_cli.tf.frame_log import FrameHistory, FrameLog, Lookup
 from arm_node.drawing import Digraph, Edge, Vertex
@@ -38,15 +38,11 @@ def tree(options: argparse.Namespace) -> None:
         from arm_cli.tf.ros_listener import listen
 
         log = listen(session, options.wait_time)
-    if options.json:
-        print_json(
-            {
-                name: {"parent": h.parent, "static": h.static, "rate_hz": h.rate_hz}
-                for name, h in sorted(log.frames.items())
-            }
-        )
-    else:
-        say(*log.draw_tree())
+    frames = {
+        name: {"parent": h.parent, "static": h.static, "rate_hz": h.rate_hz}
+        for name, h in sorted(log.frames.items())
+    }
+    say_answer(options, frames, log.draw_tree())
 
 
 @verb(
