@@ -19,17 +19,12 @@ def servos() -> FeetechServos:
 
 
 @pytest.fixture
-def words(servos: FeetechServos, tmp_path: Path) -> Iterator[list[str]]:
+def words(servos, tmp_path) -> Iterator[list[str]]:
     with EmulatedPort(servos, tmp_path / "port") as port:
         yield ["calibrate", str(tmp_path / "arm.json"), "pan", "lift=6", "--port", str(port.path)]
 
 
-def test_it_writes_where_the_joints_were_moved(
-    servos: FeetechServos,
-    words: list[str],
-    monkeypatch: pytest.MonkeyPatch,
-    capfd: pytest.CaptureFixture[str],
-):
+def test_it_writes_where_the_joints_were_moved(servos, words, monkeypatch, capfd):
     places = iter((None, (2000, 2100), None, (1500, 3000), (2600, 1000), None))
 
     def is_entered(timeout_s: float) -> bool:
@@ -51,9 +46,7 @@ def test_it_writes_where_the_joints_were_moved(
     assert not any(servo.memory[40] for servo in servos.servos.values())
 
 
-def test_it_needs_someone_at_the_keyboard(
-    words: list[str], monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-):
+def test_it_needs_someone_at_the_keyboard(words, monkeypatch, capfd):
     with open(os.devnull) as nobody:
         monkeypatch.setattr(sys, "stdin", nobody)
         assert main(words) == 2

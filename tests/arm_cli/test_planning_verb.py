@@ -21,7 +21,7 @@ XACRO = ARM.replace("<robot", "<robot xmlns:xacro='http://www.ros.org/wiki/xacro
 
 
 @pytest.fixture(name="file")
-def fixture_file(tmp_path: Path) -> Path:
+def fixture_file(tmp_path) -> Path:
     file = tmp_path / "arm.urdf.xacro"
     file.write_text(XACRO)
     return file
@@ -31,7 +31,7 @@ def read(text: str, tip: str) -> Srdf:
     return parse_srdf(text, parse_urdf(ARM.replace("$(arg tip)", tip)), remark=pytest.fail)
 
 
-def test_the_srdf_is_printed(file: Path, capsys: pytest.CaptureFixture[str]):
+def test_the_srdf_is_printed(file, capsys):
     assert main(["planning", "srdf", str(file)]) == 0
     srdf = read(capsys.readouterr().out, "lower")
     assert srdf.groups["arm"].chains == (("base", "lower"),)
@@ -42,7 +42,7 @@ def test_the_srdf_is_printed(file: Path, capsys: pytest.CaptureFixture[str]):
     }
 
 
-def test_the_srdf_is_written(file: Path, capsys: pytest.CaptureFixture[str]):
+def test_the_srdf_is_written(file, capsys):
     output = file.parent / "arm.srdf"
     assert main(["planning", "srdf", str(file), "tip:=hand", "-o", str(output)]) == 0
     assert not capsys.readouterr().out
@@ -61,16 +61,14 @@ def test_the_srdf_is_written(file: Path, capsys: pytest.CaptureFixture[str]):
         (["FILE", "-o", "FILE/x"], "cannot write FILE/x: Not a directory"),
     ],
 )
-def test_what_is_not_possible_is_refused(
-    file: Path, capsys: pytest.CaptureFixture[str], words: list[str], sentence: str
-):
+def test_what_is_not_possible_is_refused(file, capsys, words, sentence):
     given = [word.replace("FILE", str(file)) for word in words]
     assert main(["planning", "srdf", *given]) != 0
     expected = sentence.replace("FILE", str(file))
     assert capsys.readouterr().err.startswith(f"arm planning srdf: {expected}")
 
 
-def test_a_file_that_is_not_a_robot_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_a_file_that_is_not_a_robot_is_refused(tmp_path, capsys):
     file = tmp_path / "x.urdf"
     file.write_text("<robot name='r'/>")
     assert main(["planning", "srdf", str(file)]) == 1

@@ -21,7 +21,7 @@ def content() -> dict[str, Any]:
     return yaml.safe_load(PATH.read_text())
 
 
-def test_it_declares_the_three_controllers_at_100_hz(content: dict[str, Any]) -> None:
+def test_it_declares_the_three_controllers_at_100_hz(content):
     manager = content["controller_manager"]["ros__parameters"]
     assert manager.pop("update_rate") == 100
     assert {name: entry["type"] for name, entry in manager.items()} == {
@@ -32,19 +32,19 @@ def test_it_declares_the_three_controllers_at_100_hz(content: dict[str, Any]) ->
 
 
 @pytest.mark.parametrize("name", ["joint_state_broadcaster", "position_controller"])
-def test_every_parameter_is_known_to_its_controller(content: dict[str, Any], name: str) -> None:
+def test_every_parameter_is_known_to_its_controller(content, name):
     type_name = ControllerParameterFile(str(PATH)).lookup(name, "/", "type")
     parameters_type = controller_class(type_name).parameters_type
     built = build_parameters(parameters_type, content[name]["ros__parameters"])
     assert isinstance(built, parameters_type)
 
 
-def test_the_controllers_command_the_arms_four_joints(content: dict[str, Any]) -> None:
+def test_the_controllers_command_the_arms_four_joints(content):
     for name in ("position_controller", "joint_trajectory_controller"):
         assert content[name]["ros__parameters"]["joints"] == ["j0", "j1", "j2", "j3"]
 
 
-def test_the_ros1_form_has_a_controller_for_each_joint_under_arm() -> None:
+def test_the_ros1_form_has_a_controller_for_each_joint_under_arm():
     parameters = yaml.safe_load(ROS1_PATH.read_text())
     manager = parameters["/arm/controller_manager"]["ros__parameters"]
     for index in range(4):
@@ -57,6 +57,6 @@ def test_the_ros1_form_has_a_controller_for_each_joint_under_arm() -> None:
         assert controller_class(manager[name]["type"]) is JointPositionController
 
 
-def test_the_ros1_form_publishes_states_at_50_hz() -> None:
+def test_the_ros1_form_publishes_states_at_50_hz():
     file = ControllerParameterFile(str(ROS1_PATH))
     assert file.lookup("joint_state_broadcaster", "/arm", "update_rate") == 50

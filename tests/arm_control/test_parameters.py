@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from math import inf, nan
-from typing import Any
 
 import pytest
 
@@ -31,7 +30,7 @@ class Example:
     gains: Gains = Gains()
 
 
-def test_specs_name_type_and_rules() -> None:
+def test_specs_name_type_and_rules():
     specs = {spec.name: spec for spec in specs_of(Example)}
     assert list(specs) == ["joint", "count", "on", "names", "limits", "gains.p"]
     assert (specs["names"].type, specs["names"].is_list, specs["names"].default) == (str, True, ())
@@ -39,16 +38,16 @@ def test_specs_name_type_and_rules() -> None:
     assert specs["gains.p"].description == "Proportional"
 
 
-def test_missing_values_have_their_defaults() -> None:
+def test_missing_values_have_their_defaults():
     assert build_parameters(Example, {}) == Example()
 
 
-def test_values_are_taken_by_full_name() -> None:
+def test_values_are_taken_by_full_name():
     built = build_parameters(Example, {"gains.p": 2.0, "names": ["a", "b"], "on": True})
     assert built == Example(gains=Gains(2.0), names=("a", "b"), on=True)
 
 
-def test_an_integer_serves_as_a_float() -> None:
+def test_an_integer_serves_as_a_float():
     built = build_parameters(Example, {"gains.p": 2, "limits": [1, 2.5]})
     assert (built.gains.p, built.limits) == (2.0, (1.0, 2.5))
     assert isinstance(built.gains.p, float)
@@ -67,7 +66,7 @@ def test_an_integer_serves_as_a_float() -> None:
         ("names", ["a", 2], r"'names\[1\]' must be of type str, not 2"),
     ],
 )
-def test_a_wrong_type_is_refused(name: str, value: Any, says: str) -> None:
+def test_a_wrong_type_is_refused(name, value, says):
     with pytest.raises(ParameterError, match=says):
         build_parameters(Example, {name: value})
 
@@ -78,12 +77,12 @@ class Bounded:
 
 
 @pytest.mark.parametrize("value", [0, 99])
-def test_a_value_at_its_bounds_is_taken(value: int) -> None:
+def test_a_value_at_its_bounds_is_taken(value):
     assert build_parameters(Bounded, {"share": value}) == Bounded(value)
 
 
 @pytest.mark.parametrize("value", [-1, 100])
-def test_a_value_beyond_its_bounds_is_refused(value: int) -> None:
+def test_a_value_beyond_its_bounds_is_refused(value):
     with pytest.raises(ParameterError, match=r"must be above -1 and at most 99, but is -?1"):
         build_parameters(Bounded, {"share": value})
 
@@ -98,7 +97,7 @@ class Ranges:
     numbers: tuple[float, ...] = parameter((), "Each more than nothing", above=0)
 
 
-def test_bounds_make_a_range() -> None:
+def test_bounds_make_a_range():
     ranges = {spec.name: spec.range for spec in specs_of(Ranges)}
     assert ranges == {
         "above": (0, inf),
@@ -111,23 +110,23 @@ def test_bounds_make_a_range() -> None:
 
 
 @pytest.mark.parametrize("value", [-0.1, nan, inf])
-def test_at_least_means_a_finite_number(value: float) -> None:
+def test_at_least_means_a_finite_number(value):
     with pytest.raises(ParameterError, match=r"'least' must be at least 0, but is "):
         build_parameters(Ranges, {"least": value})
 
 
-def test_an_instance_made_by_hand_can_be_checked() -> None:
+def test_an_instance_made_by_hand_can_be_checked():
     check_values(Ranges(), specs_of(Ranges))
     with pytest.raises(ParameterError, match=r"'group.most' must be at most 9, but is 10"):
         check_values(Ranges(most=10), specs_of(Ranges, "group."), "group.")
 
 
-def test_an_unknown_name_is_refused_with_those_there_are() -> None:
+def test_an_unknown_name_is_refused_with_those_there_are():
     with pytest.raises(ParameterError, match=r"unknown parameter gain; known: joint, count, on"):
         build_parameters(Example, {"gain": 1.0})
 
 
-def test_of_many_parameters_the_five_nearest_are_named_and_where_the_list_is() -> None:
+def test_of_many_parameters_the_five_nearest_are_named_and_where_the_list_is():
     many = [f"gains.j{joint}.{term}" for joint in range(9) for term in ("p", "i", "i_clamp_max")]
     known = [*many, "constraints.goal_time", "constraints.stopped_velocity_tolerance", "joints"]
     said = known_parameters("constrains.goal_time", known)
@@ -137,12 +136,12 @@ def test_of_many_parameters_the_five_nearest_are_named_and_where_the_list_is() -
     assert "the nearest of 30 are joints" in known_parameters("joint", known)
 
 
-def test_a_text_that_yaml_reads_as_a_number_needs_quotes() -> None:
+def test_a_text_that_yaml_reads_as_a_number_needs_quotes():
     with pytest.raises(ParameterError, match="type str, not 1; a text that looks like a number"):
         build_parameters(Example, {"joint": 1})
 
 
-def test_a_field_that_cannot_be_a_parameter_is_the_authors_mistake() -> None:
+def test_a_field_that_cannot_be_a_parameter_is_the_authors_mistake():
     @dataclass(frozen=True)
     class Bad:
         table: dict[str, int]

@@ -34,12 +34,12 @@ def description() -> str:
 
 
 @pytest.fixture(scope="module")
-def robot(description: str) -> Robot:
+def robot(description) -> Robot:
     return parse_urdf(description)
 
 
 @pytest.fixture(scope="module")
-def plan(description: str) -> PickPlan:
+def plan(description) -> PickPlan:
     return plan_pick(description, PickTask())
 
 

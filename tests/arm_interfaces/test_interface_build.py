@@ -22,7 +22,7 @@ def output_of(code: str, folder: Path | None = None) -> str:
 
 
 @pytest.fixture
-def build_module(monkeypatch: pytest.MonkeyPatch) -> Any:
+def build_module(monkeypatch):
     """Import a module of the build, which is never installed."""
     monkeypatch.syspath_prepend(str(DISTRIBUTIONS[0]))
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
@@ -34,20 +34,18 @@ def build_module(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 @pytest.fixture(params=DISTRIBUTIONS, ids=lambda folder: folder.name)
-def distribution(request: pytest.FixtureRequest) -> Path:
+def distribution(request) -> Path:
     """A distribution of interface packages."""
     return request.param
 
 
 @pytest.fixture
-def packages(build_module: Any, distribution: Path) -> Any:
+def packages(build_module, distribution):
     """The packages of a distribution."""
     return build_module("interface_package").find_packages(distribution / "interfaces")
 
 
-def test_source_tree_holds_the_recorded_types(
-    build_module: Any, expected_types: dict[str, Any]
-) -> None:
+def test_source_tree_holds_the_recorded_types(build_module, expected_types):
     find_packages = build_module("interface_package").find_packages
     found = {
         f"{package.name}/{interface.kind}/{interface.name}"
@@ -58,16 +56,14 @@ def test_source_tree_holds_the_recorded_types(
     assert found == set(expected_types)
 
 
-def test_a_package_knows_those_of_its_distribution_that_it_uses(build_module: Any) -> None:
+def test_a_package_knows_those_of_its_distribution_that_it_uses(build_module):
     found = build_module("interface_package").find_packages(DISTRIBUTIONS[1] / "interfaces")
     uses = {package.name: set(package.uses) for package in found}
     assert uses["moveit_msgs"] == {"object_recognition_msgs", "octomap_msgs"}
     assert uses["octomap_msgs"] == set()
 
 
-def test_every_distribution_is_built_by_the_same_code_under_its_own_name(
-    distribution: Path,
-) -> None:
+def test_every_distribution_is_built_by_the_same_code_under_its_own_name(distribution):
     code = "from interface_build.project import *; print(DEFINITIONS, read_project().name)"
     found = output_of(code, distribution)
     assert found.split() == [str(distribution / "interfaces"), distribution.name]
@@ -78,9 +74,7 @@ def test_every_distribution_is_built_by_the_same_code_under_its_own_name(
 @pytest.mark.parametrize(
     ("chosen", "wheel"), [("", "ros-jazzy-"), ("jazzy", "ros-jazzy-"), ("kilted", "ros-kilted-")]
 )
-def test_ros_distro_chooses_the_wheels(
-    build_module: Any, monkeypatch: pytest.MonkeyPatch, chosen: str, wheel: str
-) -> None:
+def test_ros_distro_chooses_the_wheels(build_module, monkeypatch, chosen, wheel):
     monkeypatch.setenv("ROS_DISTRO", chosen)
     read_project = build_module("project").read_project
     read_project.cache_clear()
@@ -89,9 +83,7 @@ def test_ros_distro_chooses_the_wheels(
     assert all(name.startswith(wheel) for name in wheels)
 
 
-def test_a_distribution_without_wheels_is_refused_in_a_sentence(
-    build_module: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_distribution_without_wheels_is_refused_in_a_sentence(build_module, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "kilt")
     read_project = build_module("project").read_project
     read_project.cache_clear()
@@ -123,9 +115,7 @@ class RecordedBuild:
             file.write(line)
 
 
-def test_a_stage_starts_when_those_that_it_follows_are_over(
-    build_module: Any, tmp_path: Path
-) -> None:
+def test_a_stage_starts_when_those_that_it_follows_are_over(build_module, tmp_path):
     package_build = build_module("package_build")
     file = tmp_path / "order"
     builds = [
@@ -142,7 +132,7 @@ def test_a_stage_starts_when_those_that_it_follows_are_over(
     assert reported == [(done, 6) for done in range(1, 7)]
 
 
-def test_packages_that_use_each_other_are_named(build_module: Any, tmp_path: Path) -> None:
+def test_packages_that_use_each_other_are_named(build_module, tmp_path):
     package_build = build_module("package_build")
     builds = [
         RecordedBuild(package_build, tmp_path / "order", "one", uses="other"),
@@ -152,14 +142,12 @@ def test_packages_that_use_each_other_are_named(build_module: Any, tmp_path: Pat
         package_build.build_all(builds, lambda *_: None)
 
 
-def test_largest_package_is_built_first(packages: Any) -> None:
+def test_largest_package_is_built_first(packages):
     sizes = [len(package.interfaces) for package in packages]
     assert sizes == sorted(sizes, reverse=True)
 
 
-def test_every_generated_file_is_compiled_once(
-    build_module: Any, packages: Any, tmp_path: Path
-) -> None:
+def test_every_generated_file_is_compiled_once(build_module, packages, tmp_path):
     units = build_module("translation_unit")
     folder = build_module("work_folder").WorkFolder
     for package in packages:
@@ -169,9 +157,7 @@ def test_every_generated_file_is_compiled_once(
             assert len(sources) == len(set(sources)) == len(package.interfaces)
 
 
-def test_no_two_units_write_the_same_object(
-    build_module: Any, packages: Any, tmp_path: Path
-) -> None:
+def test_no_two_units_write_the_same_object(build_module, packages, tmp_path):
     folder = build_module("work_folder").WorkFolder
     for package in packages:
         found = build_module("translation_unit").find_units(package, folder(tmp_path, package.name))
@@ -179,9 +165,7 @@ def test_no_two_units_write_the_same_object(
         assert len(objects) == len(set(objects))
 
 
-def test_missing_compilers_are_named_with_the_remedy(
-    build_module: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_missing_compilers_are_named_with_the_remedy(build_module, monkeypatch):
     monkeypatch.setenv("PATH", "/nowhere")
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.delenv("CXX", raising=False)
@@ -192,16 +176,14 @@ def test_missing_compilers_are_named_with_the_remedy(
     assert "apt install gcc g++ python3-dev" in sentence
 
 
-def test_missing_python_header_is_named(
-    build_module: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_missing_python_header_is_named(build_module, monkeypatch, tmp_path):
     toolchain = build_module("toolchain")
     monkeypatch.setattr(toolchain, "python_header", lambda: tmp_path / "Python.h")
     with pytest.raises(build_module("errors").MissingToolError, match=r"Python\.h"):
         toolchain.find_toolchain()
 
 
-def test_compiler_error_is_shown(build_module: Any, tmp_path: Path) -> None:
+def test_compiler_error_is_shown(build_module, tmp_path):
     source = tmp_path / "broken.c"
     source.write_text("int main(void) { return undeclared; }", encoding="utf-8")
     toolchain = build_module("toolchain").find_toolchain()
@@ -209,15 +191,13 @@ def test_compiler_error_is_shown(build_module: Any, tmp_path: Path) -> None:
         toolchain.compile(source, tmp_path / "broken.o", [], "-O0")
 
 
-def test_progress_tells_how_far_the_build_is(build_module: Any) -> None:
+def test_progress_tells_how_far_the_build_is(build_module):
     stream = io.StringIO()
     build_module("command").BuildProgress("arm_interfaces", stream).report("linked x", 3, 4)
     assert stream.getvalue() == "arm_interfaces: [ 75 %] linked x\n"
 
 
-def test_a_lazy_package_imports_a_class_on_its_first_use(
-    build_module: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_lazy_package_imports_a_class_on_its_first_use(build_module, tmp_path, monkeypatch):
     package = tmp_path / "lazy_example"
     package.mkdir()
     for name in ("first", "second"):
@@ -238,7 +218,7 @@ def test_a_lazy_package_imports_a_class_on_its_first_use(
         _ = example.Third
 
 
-def test_templates_read_once_give_the_same_text(build_module: Any) -> None:
+def test_templates_read_once_give_the_same_text(build_module):
     code = """
 import em, io
 from interface_build import generator_caches
@@ -261,7 +241,7 @@ print(plain[1])
     assert found == "second\nother\n2\n"
 
 
-def test_messages_of_one_package_load_those_of_the_others() -> None:
+def test_messages_of_one_package_load_those_of_the_others():
     code = (
         "from moveit_msgs.msg import CollisionObject; "
         "from rclpy.serialization import deserialize_message, serialize_message; "
@@ -272,7 +252,7 @@ def test_messages_of_one_package_load_those_of_the_others() -> None:
     assert found == "crate\n"
 
 
-def test_an_installed_package_imports_only_what_is_used() -> None:
+def test_an_installed_package_imports_only_what_is_used():
     code = (
         "import sys; from control_msgs.msg import PidState; import control_msgs.action; "
         "print(*sorted(m for m in sys.modules if m.startswith('control_msgs.')))"

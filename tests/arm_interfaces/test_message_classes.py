@@ -1,6 +1,5 @@
 """Every class has the recorded fields and constants, and survives the way over the wire."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -14,7 +13,7 @@ Parts = list[tuple[str, type, dict[str, Any]]]
 
 
 @pytest.fixture
-def parts(recorded: Recorded, load_type: Callable[[str], type]) -> Parts:
+def parts(recorded, load_type) -> Parts:
     """Name the messages of a package, those inside services and actions too, with their record."""
     return [
         (f"{type_name}.{part}", cls if part == "Message" else getattr(cls, part), record)
@@ -34,7 +33,7 @@ def python_field_type(field_type: str, package: str) -> str:
     return PYTHON_NAMES.get(field_type, field_type)
 
 
-def test_fields_are_in_order(parts: Parts) -> None:
+def test_fields_are_in_order(parts):
     wanted = {
         name: [
             (field, python_field_type(kind, name.split("/")[0]))
@@ -46,7 +45,7 @@ def test_fields_are_in_order(parts: Parts) -> None:
     assert found == wanted
 
 
-def test_instances_have_every_field(parts: Parts) -> None:
+def test_instances_have_every_field(parts):
     missing = [
         f"{name}.{field}"
         for name, cls, record in parts
@@ -57,7 +56,7 @@ def test_instances_have_every_field(parts: Parts) -> None:
     assert missing == []
 
 
-def test_constants_have_their_values(parts: Parts) -> None:
+def test_constants_have_their_values(parts):
     wanted = {name: record.get("constants", {}) for name, _, record in parts}
     found = {
         name: {constant: _number(getattr(cls, constant)) for constant in wanted[name]}
@@ -66,18 +65,18 @@ def test_constants_have_their_values(parts: Parts) -> None:
     assert found == wanted
 
 
-def test_default_messages_survive_serialisation(parts: Parts) -> None:
+def test_default_messages_survive_serialisation(parts):
     for name, cls, _ in parts:
         message = cls()
         assert deserialize_message(serialize_message(message), cls) == message, name
 
 
-def test_a_motion_primitive_is_of_unknown_type_at_first(load_type: Callable[[str], type]) -> None:
+def test_a_motion_primitive_is_of_unknown_type_at_first(load_type):
     primitive = load_type("control_msgs/msg/MotionPrimitive")
     assert primitive().type == primitive.UNKNOWN == -1
 
 
-def test_one_step_is_the_default(load_type: Callable[[str], type]) -> None:
+def test_one_step_is_the_default(load_type):
     assert load_type("simulation_interfaces/srv/StepSimulation").Request().steps == 1
 
 
@@ -92,9 +91,7 @@ def test_one_step_is_the_default(load_type: Callable[[str], type]) -> None:
         ("controller_manager_msgs/msg/HardwareInterface", {"name": "ü", "is_claimed": True}),
     ],
 )
-def test_values_survive_serialisation(
-    load_type: Callable[[str], type], type_name_: str, fields: dict[str, Any]
-) -> None:
+def test_values_survive_serialisation(load_type, type_name_, fields):
     cls = load_type(type_name_)
     message = cls(**fields)
     copy = deserialize_message(serialize_message(message), cls)

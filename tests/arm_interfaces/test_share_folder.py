@@ -2,7 +2,6 @@
 
 import sys
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -23,14 +22,12 @@ PACKAGES = [
 
 
 @pytest.fixture(autouse=True)
-def _prefix_path(monkeypatch: pytest.MonkeyPatch) -> None:
+def _prefix_path(monkeypatch) -> None:
     monkeypatch.setenv("AMENT_PREFIX_PATH", sys.prefix)
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_definitions_are_those_of_the_record(
-    package: str, expected_types: dict[str, dict[str, Any]]
-) -> None:
+def test_definitions_are_those_of_the_record(package, expected_types):
     share = Path(get_package_share_directory(package))
     found = {path.relative_to(share).as_posix() for path in share.glob("*/*")}
     names = [name.split("/")[1:] for name in expected_types if name.startswith(f"{package}/")]
@@ -38,7 +35,7 @@ def test_definitions_are_those_of_the_record(
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_index_lists_the_definitions(package: str) -> None:
+def test_index_lists_the_definitions(package):
     listed, prefix = get_resource("rosidl_interfaces", package)
     share = Path(prefix) / "share" / package
     assert listed.splitlines()
@@ -46,7 +43,7 @@ def test_index_lists_the_definitions(package: str) -> None:
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_manifest_names_the_package(package: str) -> None:
+def test_manifest_names_the_package(package):
     manifest = Path(get_package_share_directory(package)) / "package.xml"
     root = ElementTree.parse(manifest).getroot()
     assert root.findtext("name") == package
@@ -54,7 +51,7 @@ def test_manifest_names_the_package(package: str) -> None:
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_manifest_names_every_package_that_a_definition_uses(package: str) -> None:
+def test_manifest_names_every_package_that_a_definition_uses(package):
     share = Path(get_package_share_directory(package))
     root = ElementTree.parse(share / "package.xml").getroot()
     text = "".join(path.read_text(encoding="utf-8") for path in share.glob("*/*"))

@@ -1,6 +1,5 @@
 """Topics, services and actions of the packages work between two processes."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -60,7 +59,7 @@ class Goal:
 
 
 @pytest.fixture
-def send_goal(client: Any) -> Any:
+def send_goal(client):
     """Send goals that are cleaned up before the node is."""
     goals: list[Goal] = []
 
@@ -73,7 +72,7 @@ def send_goal(client: Any) -> Any:
         goal.close()
 
 
-def test_transforms_go_there_and_back(client: Any, start_peer: Callable[..., Any]) -> None:
+def test_transforms_go_there_and_back(client, start_peer):
     received: list[TFMessage] = []
     publisher = client.node.create_publisher(TFMessage, "/there", 10)
     client.node.create_subscription(TFMessage, "/back", received.append, 10)
@@ -100,7 +99,7 @@ def test_transforms_go_there_and_back(client: Any, start_peer: Callable[..., Any
     assert second == TransformStamped()
 
 
-def test_controllers_are_listed(client: Any, start_peer: Callable[..., Any]) -> None:
+def test_controllers_are_listed(client, start_peer):
     start_peer("controller_lister")
     service = client.node.create_client(ListControllers, "/controller_manager/list_controllers")
     client.spin_until(service.service_is_ready, "the service")
@@ -116,9 +115,7 @@ def test_controllers_are_listed(client: Any, start_peer: Callable[..., Any]) -> 
     assert outer.chain_connections[0].reference_interfaces == inner.reference_interfaces
 
 
-def test_trajectory_is_followed(
-    client: Any, start_peer: Callable[..., Any], send_goal: Callable[..., Goal]
-) -> None:
+def test_trajectory_is_followed(client, start_peer, send_goal):
     start_peer("trajectory_follower")
     goal = send_goal(FollowJointTrajectory, TRAJECTORY_ACTION, trajectory_goal(5))
     answer = goal.result()
@@ -132,9 +129,7 @@ def test_trajectory_is_followed(
     assert goal.feedback[0].joint_names == ["j0", "j1"]
 
 
-def test_trajectory_is_cancelled(
-    client: Any, start_peer: Callable[..., Any], send_goal: Callable[..., Goal]
-) -> None:
+def test_trajectory_is_cancelled(client, start_peer, send_goal):
     start_peer("trajectory_follower")
     goal = send_goal(FollowJointTrajectory, TRAJECTORY_ACTION, trajectory_goal(5000))
     client.spin_until(lambda: len(goal.feedback) >= 3, "feedback on the way")
@@ -148,14 +143,7 @@ def test_trajectory_is_cancelled(
 @pytest.mark.parametrize(
     ("wanted_m", "reached_m", "stalled"), [(0.0, 0.01, True), (0.015, 0.015, False)]
 )
-def test_gripper_closes(
-    client: Any,
-    start_peer: Callable[..., Any],
-    send_goal: Callable[..., Goal],
-    wanted_m: float,
-    reached_m: float,
-    stalled: bool,
-) -> None:
+def test_gripper_closes(client, start_peer, send_goal, wanted_m, reached_m, stalled):
     start_peer("gripper")
     command = JointState(name=["finger"], position=[wanted_m], effort=[5.0])
     goal = send_goal(

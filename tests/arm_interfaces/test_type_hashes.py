@@ -2,9 +2,7 @@
 
 import ctypes
 import importlib
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from type_description_interfaces.srv import GetTypeDescription
@@ -28,15 +26,13 @@ def compiled_hash(type_name: str) -> str:
     return f"RIHS{type_hash.version:02d}_{bytes(type_hash.value).hex()}"
 
 
-def test_compiled_hashes_are_the_recorded_ones(recorded: dict[str, dict[str, Any]]) -> None:
+def test_compiled_hashes_are_the_recorded_ones(recorded):
     hashes = {name: record["hash"] for name, record in recorded.items()}
     assert {name: compiled_hash(name) for name in recorded} == hashes
 
 
 @pytest.mark.ros
-def test_hashes_on_the_wire_are_the_recorded_ones(
-    client: Any, start_peer: Callable[..., Any], expected_types: dict[str, dict[str, Any]]
-) -> None:
+def test_hashes_on_the_wire_are_the_recorded_ones(client, start_peer, expected_types):
     recorded = {name: value["hash"] for name, value in expected_types.items() if "/msg/" in name}
     start_peer("announcer", *recorded)
 
@@ -52,12 +48,7 @@ def test_hashes_on_the_wire_are_the_recorded_ones(
 
 @pytest.mark.ros
 @pytest.mark.parametrize("name", ["tf2_msgs/msg/TFMessage", "simulation_interfaces/msg/Bounds"])
-def test_node_describes_its_types(
-    client: Any,
-    start_peer: Callable[..., Any],
-    expected_types: dict[str, dict[str, Any]],
-    name: str,
-) -> None:
+def test_node_describes_its_types(client, start_peer, expected_types, name):
     start_peer("announcer", name)
     service = client.node.create_client(GetTypeDescription, "/announcer/get_type_description")
     client.spin_until(service.service_is_ready, "the description service")

@@ -1,7 +1,6 @@
 """The reader of parameter files reads what rcl reads; rcl's own parser is the judge."""
 
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -35,7 +34,7 @@ def context() -> Iterator[Context]:
 
 
 @pytest.fixture
-def by_rcl(context: Context, tmp_path: Path) -> ReadByRcl:
+def by_rcl(context, tmp_path) -> ReadByRcl:
     """Return the parameters of a node that starts with a file."""
 
     def read(text: str, node: str = "/n") -> dict[str, Any]:
@@ -83,13 +82,13 @@ n /n ns/n /ns/n /** ** /**/n **/n /* * /*/n */n /*/*/n /ns/** /ns/* /ns/*/n /**/
 
 
 @pytest.mark.parametrize("text", [text.replace("&", " ") for text in TEXTS.split()])
-def test_a_value_has_the_type_and_value_of_rcl(by_rcl: ReadByRcl, text: str) -> None:
+def test_a_value_has_the_type_and_value_of_rcl(by_rcl, text):
     content = f"{EVERY}    a: {text}\n"
     [value] = given_parameters(read_parameters(content), "/n").values()
     assert same(value, by_rcl(content)["a"])
 
 
-def test_a_block_of_text_is_read_as_by_rcl(by_rcl: ReadByRcl) -> None:
+def test_a_block_of_text_is_read_as_by_rcl(by_rcl):
     content = f"{EVERY}    a: |\n      5\n    b: |-\n      5\n    c: >-\n      true\n    d: ''\n"
     assert same(given_parameters(read_parameters(content), "/n"), by_rcl(content))
 
@@ -120,7 +119,7 @@ REPEATED = [
 
 
 @pytest.mark.parametrize("content", REPEATED)
-def test_repeated_keys_are_merged_as_by_rcl(by_rcl: ReadByRcl, content: str) -> None:
+def test_repeated_keys_are_merged_as_by_rcl(by_rcl, content):
     read = given_parameters(read_parameters(content), "/n")
     expected = by_rcl(content)
     assert same(dict(sorted(read.items())), dict(sorted(expected.items())))
@@ -128,14 +127,12 @@ def test_repeated_keys_are_merged_as_by_rcl(by_rcl: ReadByRcl, content: str) -> 
 
 @pytest.mark.parametrize("node", ["/n", "/ns/n", "/ns/m/n", "/ns/k"])
 @pytest.mark.parametrize("pattern", PATTERNS.split())
-def test_names_mean_the_nodes_that_they_mean_to_rcl(
-    by_rcl: ReadByRcl, pattern: str, node: str
-) -> None:
+def test_names_mean_the_nodes_that_they_mean_to_rcl(by_rcl, pattern, node):
     content = f'"{pattern}": {{ros__parameters: {{a: 1}}}}'
     assert applies(pattern, node) is ("a" in by_rcl(content, node))
 
 
-def test_namespaces_may_be_keys_above_the_nodes(by_rcl: ReadByRcl) -> None:
+def test_namespaces_may_be_keys_above_the_nodes(by_rcl):
     content = "ns: {n: {ros__parameters: {a: 1}}, m: {n: {ros__parameters: {b: 1}}}}"
     read = read_parameters(content)
     assert list(read) == ["/ns/n", "/ns/m/n"]
@@ -143,7 +140,7 @@ def test_namespaces_may_be_keys_above_the_nodes(by_rcl: ReadByRcl) -> None:
         assert given_parameters(read, node) == by_rcl(content, node)
 
 
-def test_a_written_file_keeps_its_types(by_rcl: ReadByRcl) -> None:
+def test_a_written_file_keeps_its_types(by_rcl):
     texts = "y", "08", "1e3", "nan", "0x1F", "5", "", "a b"
     values: dict[str, Any] = {f"t{number}": text for number, text in enumerate(texts)}
     values |= {"list": ["1e3", "y"], "f": 1e-7, "g": 1e300, "i": 3, "b": True, "l": [1.0, 2.5]}
@@ -153,7 +150,7 @@ def test_a_written_file_keeps_its_types(by_rcl: ReadByRcl) -> None:
     assert given_parameters(read_parameters(content), "/n") == expected
 
 
-def test_content_of_a_program_is_merged_too() -> None:
+def test_content_of_a_program_is_merged_too():
     content = {"ns": {"n": {"ros__parameters": {"a.b": 1, "a": {"c": 2}}}}, "k": {"x": {}}, "e": {}}
     assert parameters_by_node(content) == {
         "/ns/n": {"ros__parameters": {"a": {"b": 1, "c": 2}}},
@@ -164,12 +161,12 @@ def test_content_of_a_program_is_merged_too() -> None:
     assert parameters_by_node(parameters_by_node(content)) == parameters_by_node(content)
 
 
-def test_a_name_that_is_a_value_and_a_group_keeps_its_dot() -> None:
+def test_a_name_that_is_a_value_and_a_group_keeps_its_dot():
     values = {"x.a.b": 2, "x.a": 1, "c.d": 4, "c": 3}
     assert nested_parameters(values) == {"x": {"a.b": 2, "a": 1}, "c.d": 4, "c": 3}
 
 
 @pytest.mark.parametrize("text", ["? [1]\n: 2", "a: {<<: {b: 1}}", "a: ["])
-def test_what_is_no_parameter_file_is_refused(text: str) -> None:
+def test_what_is_no_parameter_file_is_refused(text):
     with pytest.raises(YamlError):
         read_parameters(text)

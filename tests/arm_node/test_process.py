@@ -65,9 +65,7 @@ sys.exit(run_process(application, ["program"]))
 
 
 @pytest.mark.parametrize(("inherited", "then"), [("SIG_DFL", "ends"), ("SIG_IGN", "goes on")])
-def test_a_terminal_that_goes_ends_the_process_unless_it_runs_under_nohup(
-    inherited: str, then: str
-):
+def test_a_terminal_that_goes_ends_the_process_unless_it_runs_under_nohup(inherited, then):
     run = run_python("-c", HUNG_UP, inherited, check=True)
     assert run.stdout.split("\n")[0] == then
 
@@ -142,7 +140,7 @@ sys.exit(code)
 
 
 @pytest.mark.parametrize(("application", "code"), [("made", 0), ("refused", 1)])
-def test_nodes_and_their_participant_end_before_the_process(application: str, code: int):
+def test_nodes_and_their_participant_end_before_the_process(application, code):
     run = run_python("-c", LEFT_ALONE, application)
     assert run.returncode == code, run.stderr
     threads = run.stdout.split("\n")
@@ -199,9 +197,7 @@ sys.exit(run_process(application, ["program", *sys.argv[1:]], (ValueError,)))
     ("arguments", "name"),
     [((), "worker"), (("--ros-args", "-r", "__node:=other", "-r", "__ns:=/left"), "left.other")],
 )
-def test_a_node_that_cannot_be_made_says_so_under_its_own_name(
-    arguments: tuple[str, ...], name: str
-):
+def test_a_node_that_cannot_be_made_says_so_under_its_own_name(arguments, name):
     run = run_python("-c", REFUSING, *arguments)
     assert run.returncode == 1
     assert f"[{name}]: no such robot" in run.stderr

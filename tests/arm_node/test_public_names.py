@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -20,7 +19,7 @@ def test_a_wrong_name_is_an_attribute_error():
         _ = arm_node.prepare
 
 
-def test_a_name_is_imported_when_it_is_used(tmp_path: Path):
+def test_a_name_is_imported_when_it_is_used(tmp_path):
     package = tmp_path / "lazy"
     package.mkdir()
     (package / "__init__.py").write_text(

@@ -51,9 +51,7 @@ def node() -> FakeNode:
 
 
 @pytest.mark.parametrize("name", ["levels_controller", "left.levels_controller"])
-def test_what_a_node_logs_through_python_follows_its_level(
-    node: FakeNode, name: str, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_what_a_node_logs_through_python_follows_its_level(node, name, capfd):
     from arm_node.ros_logging import bridge_logging
 
     core = logging.getLogger("levels_controller")
@@ -75,11 +73,11 @@ def test_what_a_node_logs_through_python_follows_its_level(
     assert "too mild" not in printed
 
 
-def test_a_level_that_there_is_not_is_refused_with_those_there_are(node: FakeNode) -> None:
+def test_a_level_that_there_is_not_is_refused_with_those_there_are(node):
     result = set_level(node, "levels_controller", 77)
     assert not result.successful
     assert result.reason.startswith("no logger can have the level 77; the levels are 10 (DEBUG)")
 
 
-def test_a_logger_without_a_level_reports_0(node: FakeNode) -> None:
+def test_a_logger_without_a_level_reports_0(node):
     assert get_level(node, "nobody_knows_it") == 0

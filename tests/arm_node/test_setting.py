@@ -2,7 +2,6 @@
 
 from array import array
 from dataclasses import dataclass
-from typing import Any
 
 import pytest
 
@@ -76,7 +75,7 @@ def test_a_prefix_selects_one_of_several():
         ({"step": "x"}, "step must be a finite number, not 'x'"),
     ],
 )
-def test_an_invalid_value_is_named_with_what_is_valid(values: dict[str, Any], sentence: str):
+def test_an_invalid_value_is_named_with_what_is_valid(values, sentence):
     with pytest.raises(ParameterValueError) as error:
         read(text="x", **values)
     assert str(error.value) == sentence

@@ -22,7 +22,7 @@ def event() -> Iterator[StopEvent]:
     signal.signal(signal.SIGUSR1, previous)
 
 
-def test_it_is_set_once_and_for_all(event: StopEvent):
+def test_it_is_set_once_and_for_all(event):
     assert not event.is_set()
     assert not event.wait(0.0)
     event.set()
@@ -32,13 +32,13 @@ def test_it_is_set_once_and_for_all(event: StopEvent):
     assert event.wait(0.0)
 
 
-def test_a_time_out_is_waited_for(event: StopEvent):
+def test_a_time_out_is_waited_for(event):
     start_s = time.monotonic()
     assert not event.wait(0.05)
     assert time.monotonic() - start_s >= 0.05
 
 
-def test_all_threads_that_wait_wake(event: StopEvent):
+def test_all_threads_that_wait_wake(event):
     woken: list[bool] = []
     threads = [threading.Thread(target=lambda: woken.append(event.wait(60.0))) for _ in range(3)]
     for thread in threads:
@@ -49,7 +49,7 @@ def test_all_threads_that_wait_wake(event: StopEvent):
     assert woken == [True] * 3
 
 
-def test_a_signal_wakes_the_main_thread(event: StopEvent):
+def test_a_signal_wakes_the_main_thread(event):
     threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGUSR1)).start()
     assert event.wait(60.0)
 
@@ -79,7 +79,7 @@ def signal_at_each_line(event: StopEvent) -> Iterator[int]:
             return
 
 
-def test_a_signal_in_the_midst_of_waiting_does_not_wait_for_itself(event: StopEvent):
+def test_a_signal_in_the_midst_of_waiting_does_not_wait_for_itself(event):
     lines = list(signal_at_each_line(event))
     assert len(lines) > 2
     assert event.is_set()

@@ -53,9 +53,7 @@ def start() -> Iterator[Callable[..., subprocess.Popen[str]]]:
         ("raise ValueError('oops')", 1, "[worker]: the task failed", True),
     ],
 )
-def test_it_ends_with_the_process(
-    start: Callable[..., subprocess.Popen[str]], body: str, code: int, said: str, traceback: bool
-) -> None:
+def test_it_ends_with_the_process(start, body, code, said, traceback):
     process = start(body)
     output, _ = process.communicate(timeout=TIMEOUT_S)
     assert process.returncode == code
@@ -63,7 +61,7 @@ def test_it_ends_with_the_process(
     assert ("Traceback" in output) is traceback
 
 
-def test_a_task_notices_a_signal(start: Callable[..., subprocess.Popen[str]]) -> None:
+def test_a_task_notices_a_signal(start):
     process = start("print('at work', flush=True); return 5 if process.wait(60.0) else 4")
     assert process.stdout is not None
     assert "at work\n" in process.stdout
@@ -80,9 +78,7 @@ def test_a_task_notices_a_signal(start: Callable[..., subprocess.Popen[str]]) ->
         ("--foo", 2, "cannot start ROS: unknown arguments after --ros-args: ['--foo']"),
     ],
 )
-def test_arguments_that_rclpy_refuses_are_a_sentence(
-    start: Callable[..., subprocess.Popen[str]], arguments: str, code: int, said: str
-) -> None:
+def test_arguments_that_rclpy_refuses_are_a_sentence(start, arguments, code, said):
     process = start("return 0", "--ros-args", *arguments.split())
     output, _ = process.communicate(timeout=TIMEOUT_S)
     assert process.returncode == code

@@ -114,7 +114,7 @@ def test_parameters_replace_the_defaults_one_by_one():
         ("execution_duration_monitoring", "false", "is 'false'; it is true or false"),
     ],
 )
-def test_what_cannot_be_used_is_refused(name: str, value: object, says: str):
+def test_what_cannot_be_used_is_refused(name, value, says):
     with pytest.raises(PlanningError) as caught:
         ExecutionSettings.read({name: value})
     assert str(caught.value) == f"trajectory_execution.{name} {says}"
@@ -130,6 +130,6 @@ def test_what_cannot_be_used_is_refused(name: str, value: object, says: str):
         ("controller_names", "hand", "controller_names is not a list of names"),
     ],
 )
-def test_what_a_controller_cannot_use_is_refused(name: str, value: object, says: str):
+def test_what_a_controller_cannot_use_is_refused(name, value, says):
     with pytest.raises(PlanningError, match=says):
         controllers_of_settings({**CONTROLLER, name: value})

@@ -136,14 +136,14 @@ class FakePlanner:
 
 
 @pytest.fixture
-def planner(monkeypatch: pytest.MonkeyPatch) -> Planner:
+def planner(monkeypatch) -> Planner:
     monkeypatch.setattr(
         arm_planning.planner, "planner_for", lambda _name, _parameters: FakePlanner()
     )
     return Planner(MODEL, SCENE)
 
 
-def test_a_plan_leads_from_the_corrected_start_to_the_goal_with_the_remark(planner: Planner):
+def test_a_plan_leads_from_the_corrected_start_to_the_goal_with_the_remark(planner):
     response = planner.plan(PlanRequest("arm", GOAL, start={"shoulder": 3.005}))
     assert response.trajectory is not None
     assert response.trajectory.positions[0].tolist() == [3.0, 0.0]
@@ -153,9 +153,7 @@ def test_a_plan_leads_from_the_corrected_start_to_the_goal_with_the_remark(plann
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
-def test_a_speed_that_is_no_fraction_and_a_time_without_end_change_no_plan(
-    planner: Planner, value: float
-):
+def test_a_speed_that_is_no_fraction_and_a_time_without_end_change_no_plan(planner, value):
     usual = planner.plan(PlanRequest("arm", GOAL)).trajectory
     odd = PlanRequest("arm", GOAL, velocity_scaling=value, allowed_time_s=math.inf)
     found = planner.plan(odd).trajectory
@@ -179,9 +177,7 @@ def test_a_speed_that_is_no_fraction_and_a_time_without_end_change_no_plan(
         ),
     ],
 )
-def test_a_failure_has_its_code_and_a_sentence(
-    planner: Planner, request_: PlanRequest, code: str, sentence: str
-):
+def test_a_failure_has_its_code_and_a_sentence(planner, request_, code, sentence):
     response = planner.plan(request_)
     assert response.trajectory is None
     assert response.code.name == code
@@ -192,7 +188,7 @@ def test_a_failure_has_its_code_and_a_sentence(
     ("elbow", "what"),
     [(0.0, "apart, closer than the 0.1 mm that the proof of a motion needs"), (0.5, "deep")],
 )
-def test_neighbours_that_touch_and_are_not_allowed_to_are_named(elbow: float, what: str):
+def test_neighbours_that_touch_and_are_not_allowed_to_are_named(elbow, what):
     planner = Planner(MODEL, replace(at(elbow=elbow), allowed=AllowedCollisions()))
     response = planner.plan(PlanRequest("arm", (joint_goal({"shoulder": 1.0}),)))
     assert response.code is MoveItErrorCode.START_STATE_IN_COLLISION
@@ -204,7 +200,7 @@ def test_neighbours_that_touch_and_are_not_allowed_to_are_named(elbow: float, wh
 
 
 @pytest.mark.parametrize("looks", [0, 1])
-def test_an_interruption_ends_each_step(planner: Planner, looks: int):
+def test_an_interruption_ends_each_step(planner, looks):
     answers = iter([False] * looks)
     response = planner.plan(PlanRequest("arm", GOAL), interrupted=lambda: next(answers, True))
     assert response.code is MoveItErrorCode.PREEMPTED

@@ -29,7 +29,7 @@ def made() -> Planner:
 
 
 @pytest.fixture
-def planner(made: Planner) -> Planner:
+def planner(made) -> Planner:
     """A planner with the arm bent, and nothing around it."""
     bent = dict(zip(made.model.group("arm").joints, BENT, strict=True))
     made.scene = replace(made.scene, positions={**made.scene.positions, **bent}, objects={})

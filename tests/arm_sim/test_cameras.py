@@ -1,7 +1,6 @@
 """Pictures of the present state."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,14 +16,14 @@ WALL = """<sdf version='1.9'><model name='wall'><static>true</static><link name=
 
 
 @pytest.fixture(scope="module", params=["auto", "raycast"])
-def seen(request: pytest.FixtureRequest) -> Iterator[Simulation]:
+def seen(request) -> Iterator[Simulation]:
     with Simulation(
         "arm", arguments={"camera": "side"}, world="objects", render_backend=request.param
     ) as simulation:
         yield simulation
 
 
-def test_an_image_shows_the_present_state(seen: Simulation):
+def test_an_image_shows_the_present_state(seen):
     camera = seen.camera(NAME)
     before = camera.image()
     assert before.shape == (camera.height, camera.width, 3)
@@ -37,7 +36,7 @@ def test_an_image_shows_the_present_state(seen: Simulation):
     assert (after == camera.image()).all()
 
 
-def test_depth_is_in_metres_and_infinite_beyond_the_range(seen: Simulation):
+def test_depth_is_in_metres_and_infinite_beyond_the_range(seen):
     camera = seen.camera(NAME)
     depth = camera.depth()
     assert depth.shape == (camera.height, camera.width)
@@ -47,19 +46,19 @@ def test_depth_is_in_metres_and_infinite_beyond_the_range(seen: Simulation):
     assert finite.max() <= 100.0
 
 
-def test_a_depth_image_leaves_the_next_image_as_it_was(seen: Simulation):
+def test_a_depth_image_leaves_the_next_image_as_it_was(seen):
     camera = seen.camera(NAME)
     before = camera.image()
     camera.depth()
     assert (camera.image() == before).all()
 
 
-def test_a_camera_is_found_by_its_name_and_its_topic(seen: Simulation):
+def test_a_camera_is_found_by_its_name_and_its_topic(seen):
     assert seen.cameras == ("camera",)
     assert seen.camera("camera") is seen.camera("videocamera") is seen.camera("/videocamera")
 
 
-def test_a_spawned_thing_is_seen(seen: Simulation):
+def test_a_spawned_thing_is_seen(seen):
     camera = seen.camera(NAME)
     before = camera.image()
     name = seen.spawn(WALL, pose=(0.5, 0.0, 0.0), frame="camera_link")
@@ -78,13 +77,13 @@ def test_two_simulations_draw_side_by_side():
         assert (camera.image() == before).all()
 
 
-def test_the_intrinsic_matrix_has_its_centre_in_the_middle(seen: Simulation):
+def test_the_intrinsic_matrix_has_its_centre_in_the_middle(seen):
     camera = seen.camera(NAME)
     assert camera.matrix[0, 2] == camera.width / 2
     assert camera.matrix[0, 0] == camera.matrix[1, 1] > 0
 
 
-def test_rays_times_depth_are_the_points_of_a_plane(seen: Simulation):
+def test_rays_times_depth_are_the_points_of_a_plane(seen):
     camera = seen.camera(NAME)
     name = seen.spawn(WALL, pose=(0.5, 0.0, 0.0, 0.0, 0.4, 0.0), frame="camera_link")
     points = camera.rays() * camera.depth()[..., np.newaxis]
@@ -98,7 +97,7 @@ def test_rays_times_depth_are_the_points_of_a_plane(seen: Simulation):
     assert np.median(distance) == pytest.approx(0.5 * np.cos(0.4) - 0.05, abs=1e-4)
 
 
-def test_the_rays_are_those_of_the_matrix(seen: Simulation):
+def test_the_rays_are_those_of_the_matrix(seen):
     camera = seen.camera(NAME)
     pixel = camera.matrix @ camera.rays()[7, 11]
     np.testing.assert_allclose(pixel, [11.5, 7.5, 1.0], atol=1e-9)
@@ -110,7 +109,7 @@ LENS = """<lens><intrinsics><fx>300</fx><fy>310</fy><cx>150</cx><cy>125</cy></in
 
 
 @pytest.mark.parametrize("backend", ["auto", "raycast"])
-def test_a_lens_of_the_description_is_the_library_s(backend: str, tmp_path: Path):
+def test_a_lens_of_the_description_is_the_library_s(backend, tmp_path):
     text = expand_xacro(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
     urdf = tmp_path / "arm.urdf"
     urdf.write_text(text.replace("<image>", f"{LENS}<image>", 1))
@@ -132,7 +131,7 @@ def test_a_lens_of_the_description_is_the_library_s(backend: str, tmp_path: Path
     np.testing.assert_allclose(heights, 1.0, atol=1e-3)
 
 
-def test_an_unknown_camera_is_named_with_those_that_exist(seen: Simulation, sim: Simulation):
+def test_an_unknown_camera_is_named_with_those_that_exist(seen, sim):
     with pytest.raises(UnknownNameError, match="no camera 'x'; the robot has camera"):
         seen.camera("x")
     with pytest.raises(UnknownNameError, match="no camera 'x'; the robot has none"):

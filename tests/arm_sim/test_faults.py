@@ -3,7 +3,6 @@
 import logging
 import time
 from math import isnan, nan
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,7 +24,7 @@ def sim():
         yield simulation
 
 
-def test_a_stalled_joint_stays_where_it_is_and_moves_again_afterwards(sim: BenchSimulation):
+def test_a_stalled_joint_stays_where_it_is_and_moves_again_afterwards(sim):
     with sim.faults.joint_stalled("j1"):
         sim["position_controller"].command(GOAL)
         sim.assert_reaches({"j0": 1.0, "j2": 0.1, "j3": 0.5})
@@ -35,7 +34,7 @@ def test_a_stalled_joint_stays_where_it_is_and_moves_again_afterwards(sim: Bench
     sim.assert_reaches(GOAL, within_s=2.0)
 
 
-def test_a_stalled_joint_still_sticks_when_the_world_changes(sim: BenchSimulation):
+def test_a_stalled_joint_still_sticks_when_the_world_changes(sim):
     body = '<body name="b"><freejoint/><geom size="0.1"/></body>'
     ball = f"<mujoco><worldbody>{body}</worldbody></mujoco>"
     with sim.faults.joint_stalled("j0"):
@@ -46,7 +45,7 @@ def test_a_stalled_joint_still_sticks_when_the_world_changes(sim: BenchSimulatio
     sim.assert_reaches(GOAL, within_s=2.0)
 
 
-def test_a_fault_lasts_when_the_simulation_is_reset(sim: BenchSimulation):
+def test_a_fault_lasts_when_the_simulation_is_reset(sim):
     sim.run(0.1)
     with sim.faults.joint_stalled("j1"):
         sim.run(0.1)
@@ -59,7 +58,7 @@ def test_a_fault_lasts_when_the_simulation_is_reset(sim: BenchSimulation):
     assert span.ended_s == pytest.approx(0.5)
 
 
-def test_a_frozen_sensor_keeps_its_reading(sim: BenchSimulation):
+def test_a_frozen_sensor_keeps_its_reading(sim):
     sim["position_controller"].command(GOAL)
     sim.run(0.1)
     with sim.faults.sensor_frozen("j0/position"):
@@ -73,7 +72,7 @@ def test_a_frozen_sensor_keeps_its_reading(sim: BenchSimulation):
     assert sim.states["j0/position"] == sim.joints["j0"].position
 
 
-def test_a_sensor_reads_nan(sim: BenchSimulation):
+def test_a_sensor_reads_nan(sim):
     with sim.faults.sensor_nan("j2"):
         sim.step()
         assert [name for name, value in sim.states.items() if isnan(value)] == [
@@ -83,7 +82,7 @@ def test_a_sensor_reads_nan(sim: BenchSimulation):
     assert not any(map(isnan, sim.states.values()))
 
 
-def test_a_sensor_of_gazebo_can_be_wrong_in_one_channel(tmp_path: Path):
+def test_a_sensor_of_gazebo_can_be_wrong_in_one_channel(tmp_path):
     (tmp_path / "box.urdf").write_text(IMU)
     with BenchSimulation(robot=tmp_path / "box.urdf") as sim:
         with sim.faults.sensor_nan("imu/linear_acceleration.z"):
@@ -102,7 +101,7 @@ def noise(sim: BenchSimulation, seed: int, name: str = "j0") -> list[float]:
     return found
 
 
-def test_a_noisy_sensor_has_the_deviation_that_was_asked_for(sim: BenchSimulation):
+def test_a_noisy_sensor_has_the_deviation_that_was_asked_for(sim):
     found = noise(sim, 3)
     assert np.std(found) == pytest.approx(0.1, rel=0.2)
     assert np.mean(found) == pytest.approx(0.0, abs=0.03)
@@ -116,9 +115,7 @@ def test_noise_repeats_with_its_seed():
     assert runs[0] == runs[1] != runs[2]
 
 
-def test_a_controller_that_raises_is_stopped_each_time(
-    sim: BenchSimulation, caplog: pytest.LogCaptureFixture
-):
+def test_a_controller_that_raises_is_stopped_each_time(sim, caplog):
     controller = sim["position_controller"]
     with caplog.at_level(logging.ERROR), sim.faults.controller_raises("position_controller"):
         assert not controller.is_active
@@ -132,14 +129,14 @@ def test_a_controller_that_raises_is_stopped_each_time(
     assert controller.is_active
 
 
-def test_a_slow_tick_takes_longer(sim: BenchSimulation):
+def test_a_slow_tick_takes_longer(sim):
     with sim.faults.slow_tick(0.01):
         began_s = time.monotonic()
         sim.run(10 * sim.period_s)
         assert time.monotonic() - began_s >= 0.1
 
 
-def test_lost_commands_do_not_move_the_robot(sim: BenchSimulation):
+def test_lost_commands_do_not_move_the_robot(sim):
     with sim.faults.messages_dropped("position_controller"):
         sim["position_controller"].command(GOAL)
         sim.run(0.2)
@@ -148,7 +145,7 @@ def test_lost_commands_do_not_move_the_robot(sim: BenchSimulation):
     sim.assert_reaches(GOAL)
 
 
-def test_a_delayed_command_takes_effect_later(sim: BenchSimulation):
+def test_a_delayed_command_takes_effect_later(sim):
     with sim.faults.messages_delayed("position_controller", by_s=0.5):
         sim["position_controller"].command(GOAL)
         sim.run(0.5)
@@ -157,7 +154,7 @@ def test_a_delayed_command_takes_effect_later(sim: BenchSimulation):
         assert sim.joints["j0"].position > 1e-5
 
 
-def test_a_second_copy_comes_after_later_commands(sim: BenchSimulation):
+def test_a_second_copy_comes_after_later_commands(sim):
     with sim.faults.messages_doubled("position_controller", after_s=1.0):
         sim["position_controller"].command(GOAL)
         sim.run(0.5)
@@ -189,9 +186,7 @@ def test_a_dark_camera_sees_nothing():
         ("camera_dark", ["c"], "no camera 'c'"),
     ],
 )
-def test_a_fault_of_something_that_is_not_there_is_refused(
-    sim: BenchSimulation, fault: str, arguments: list, sentence: str
-):
+def test_a_fault_of_something_that_is_not_there_is_refused(sim, fault, arguments, sentence):
     with (
         pytest.raises((FaultError, CallError, UnknownNameError), match=sentence),
         getattr(sim.faults, fault)(*arguments),
@@ -199,7 +194,7 @@ def test_a_fault_of_something_that_is_not_there_is_refused(
         pass
 
 
-def test_a_recording_of_a_run_with_faults_replays(tmp_path: Path):
+def test_a_recording_of_a_run_with_faults_replays(tmp_path):
     file = tmp_path / "faults.run"
     with BenchSimulation(robot="arm", arguments={"camera": "none"}, record=file) as sim:
         with (
@@ -218,9 +213,7 @@ def test_a_recording_of_a_run_with_faults_replays(tmp_path: Path):
 
 
 @pytest.mark.parametrize("again", ["reset", "restore"])
-def test_a_recording_that_begins_while_faults_last_has_them(
-    sim: BenchSimulation, again: str, tmp_path: Path
-):
+def test_a_recording_that_begins_while_faults_last_has_them(sim, again, tmp_path):
     saved = sim.save()
     with (
         sim.faults.joint_stalled("j1"),

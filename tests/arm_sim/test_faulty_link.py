@@ -46,6 +46,6 @@ def test_what_is_lost_does_not_depend_on_the_delay():
 @pytest.mark.parametrize(
     "values", [{"lost": 1.1}, {"doubled": -0.1}, {"lost": nan}, {"delay_s": inf}, {"jitter_s": -1}]
 )
-def test_impossible_values_are_refused(values: dict[str, float]):
+def test_impossible_values_are_refused(values):
     with pytest.raises(CallError):
         LinkFault(**values)

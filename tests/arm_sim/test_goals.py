@@ -19,7 +19,7 @@ def mycobot() -> Iterator[Simulation]:
         yield simulation
 
 
-def test_follow_runs_to_the_end(mycobot: Simulation):
+def test_follow_runs_to_the_end(mycobot):
     begin_s = mycobot.time_s
     result = mycobot.follow(ARM, {"times_s": [0.5, 1.0], "positions": [[0.1] * 6, [0.2] * 6]})
     assert (result.outcome, result.code) == (GoalOutcome.SUCCEEDED, ErrorCode.SUCCESSFUL)
@@ -28,7 +28,7 @@ def test_follow_runs_to_the_end(mycobot: Simulation):
     assert [mycobot.joints[j].position for j in joints] == pytest.approx([0.2] * 6, abs=0.02)
 
 
-def test_a_goal_advances_while_the_simulation_runs(mycobot: Simulation):
+def test_a_goal_advances_while_the_simulation_runs(mycobot):
     goal = mycobot[ARM].follow(THERE)
     mycobot.run(0.3)
     assert not goal.done
@@ -39,7 +39,7 @@ def test_a_goal_advances_while_the_simulation_runs(mycobot: Simulation):
     assert goal.result.message == "Goal successfully reached!"
 
 
-def test_a_cancelled_goal_is_an_error(mycobot: Simulation):
+def test_a_cancelled_goal_is_an_error(mycobot):
     goal = mycobot[ARM].follow(THERE)
     goal.cancel()
     with pytest.raises(GoalError, match="was canceled") as caught:
@@ -47,7 +47,7 @@ def test_a_cancelled_goal_is_an_error(mycobot: Simulation):
     assert caught.value.outcome is GoalOutcome.CANCELED
 
 
-def test_a_new_goal_preempts_the_old_one(mycobot: Simulation):
+def test_a_new_goal_preempts_the_old_one(mycobot):
     first, second = mycobot[ARM].follow(THERE), mycobot[ARM].follow(THERE)
     mycobot.run(2.0)
     with pytest.raises(GoalError, match="preempted by new incoming action") as caught:
@@ -56,14 +56,14 @@ def test_a_new_goal_preempts_the_old_one(mycobot: Simulation):
     assert second.result.outcome is GoalOutcome.SUCCEEDED
 
 
-def test_a_rejected_goal_has_the_action_s_code(mycobot: Simulation):
+def test_a_rejected_goal_has_the_action_s_code(mycobot):
     with pytest.raises(GoalError, match="don't match the controller joints") as caught:
         mycobot.follow(ARM, JointTrajectory([1.0], [[0.1]], joints=("elbow",)))
     assert caught.value.code == ErrorCode.INVALID_JOINTS
     assert caught.value.outcome is None
 
 
-def test_a_goal_that_lasts_too_long_is_cancelled(mycobot: Simulation):
+def test_a_goal_that_lasts_too_long_is_cancelled(mycobot):
     with pytest.raises(GoalError, match=r"'arm_controller' has not ended after 0\.1 s"):
         mycobot.follow(ARM, THERE, timeout_s=0.1)
 
@@ -78,12 +78,12 @@ def test_a_goal_that_lasts_too_long_is_cancelled(mycobot: Simulation):
         (JointTrajectory(["soon"], [[0.0] * 6]), "times_s of the trajectory must be numbers"),
     ],
 )
-def test_a_bad_trajectory_gets_a_sentence(mycobot: Simulation, trajectory, message: str):
+def test_a_bad_trajectory_gets_a_sentence(mycobot, trajectory, message):
     with pytest.raises(CallError, match=message):
         mycobot.follow(ARM, trajectory)
 
 
-def test_the_gripper_closes_and_reports_its_state(mycobot: Simulation):
+def test_the_gripper_closes_and_reports_its_state(mycobot):
     result = mycobot.grip(GRIPPER, -0.5)
     assert result.reached_goal
     assert result.state is not None
@@ -91,7 +91,7 @@ def test_the_gripper_closes_and_reports_its_state(mycobot: Simulation):
     assert np.isfinite(result.state.effort)
 
 
-def test_a_goal_of_another_kind_of_controller_is_refused(mycobot: Simulation):
+def test_a_goal_of_another_kind_of_controller_is_refused(mycobot):
     with pytest.raises(CallError, match="which does not follow trajectories"):
         mycobot.follow(GRIPPER, THERE)
     with pytest.raises(CallError, match="which does not move a gripper"):

@@ -32,7 +32,7 @@ OWN_CONTROLLER = {
 
 
 @pytest.fixture
-def servo_arm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def servo_arm(tmp_path, monkeypatch) -> None:
     """The example package, as if it were installed with its entry points."""
     described = tmp_path / "servo_arm-0.1.0.dist-info"
     described.mkdir()
@@ -45,19 +45,19 @@ def servo_arm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def driven(servo_arm: None) -> Iterator[Simulation]:
+def driven(servo_arm) -> Iterator[Simulation]:
     """A pendulum that the example's controller drives."""
     with Simulation(PENDULUM, controllers=OWN_CONTROLLER) as sim:
         yield sim
 
 
-def test_a_controller_of_an_installed_package_runs(driven: Simulation):
+def test_a_controller_of_an_installed_package_runs(driven):
     driven.controllers.set_parameters("pd_controller", target=0.5)
     driven.run(5.0)
     assert driven.joints["hinge"].position == pytest.approx(0.5, abs=0.02)
 
 
-def test_hardware_of_a_user_s_own_is_simulated_as_in_the_node(servo_arm: None):
+def test_hardware_of_a_user_s_own_is_simulated_as_in_the_node(servo_arm):
     folder = EXAMPLE / "config" / "controllers.yaml"
     with Simulation(EXAMPLE / "urdf" / "servo_arm.urdf.xacro", controllers=folder) as sim:
         assert sim.controllers["pd_controller"].is_active
@@ -76,14 +76,12 @@ def test_hardware_of_a_user_s_own_is_simulated_as_in_the_node(servo_arm: None):
         ({"p": "much"}, "parameter 'p' must be of type float, not 'much'"),
     ],
 )
-def test_a_parameter_that_cannot_be_changed_gets_a_sentence(
-    driven: Simulation, values: dict, message: str
-):
+def test_a_parameter_that_cannot_be_changed_gets_a_sentence(driven, values, message):
     with pytest.raises(ParameterError, match=message):
         driven.controllers.set_parameters("pd_controller", **values)
 
 
-def test_a_parameter_of_the_configuration_is_not_changed_later(sim: Simulation):
+def test_a_parameter_of_the_configuration_is_not_changed_later(sim):
     with pytest.raises(ParameterError, match="'joints' takes effect only when the controller is"):
         sim.controllers.set_parameters("position_controller", joints=["j0"])
     with pytest.raises(UnknownNameError, match="no controller 'x'"):

@@ -1,7 +1,5 @@
 """Plans of the library, around what is in its world."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from robots import link, robot
@@ -44,7 +42,7 @@ def test_the_same_goal_from_the_same_state_gives_the_same_plan(sim):
     assert np.array_equal(first.times_s, second.times_s)
 
 
-def test_a_recording_of_planned_motions_replays_with_equal_states(sim, tmp_path: Path):
+def test_a_recording_of_planned_motions_replays_with_equal_states(sim, tmp_path):
     with sim.record(tmp_path / "planned.run"):
         sim.follow(sim.plan("ready"))
         sim.follow(sim.plan("home"))

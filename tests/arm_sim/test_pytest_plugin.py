@@ -45,7 +45,7 @@ def test_a_run_that_does_not_use_it_imports_nothing_heavy():
     assert done.stdout == "[]\n", done.stderr
 
 
-def test_a_test_gets_a_simulation(pytester: pytest.Pytester):
+def test_a_test_gets_a_simulation(pytester):
     result = run(
         pytester,
         """
@@ -61,7 +61,7 @@ def test_arm(arm_sim):
     assert not (pytester.path / "arm-artifacts").exists()
 
 
-def test_each_test_begins_anew(pytester: pytest.Pytester):
+def test_each_test_begins_anew(pytester):
     result = run(
         pytester,
         """
@@ -78,7 +78,7 @@ def test_arm(arm_sim, goal):
     result.assert_outcomes(passed=2)
 
 
-def test_the_marker_says_what_is_simulated(pytester: pytest.Pytester):
+def test_the_marker_says_what_is_simulated(pytester):
     pytester.makefile(
         ".urdf",
         slider="""<robot name="slider"><link name="base"/><link name="sled"><inertial>
@@ -108,9 +108,7 @@ def test_slider(arm_sim):
         ("robot='no.urdf'", "*no.urdf*"),
     ],
 )
-def test_a_mistake_in_a_marker_gets_a_sentence(
-    pytester: pytest.Pytester, marker: str, sentence: str
-):
+def test_a_mistake_in_a_marker_gets_a_sentence(pytester, marker, sentence):
     result = run(pytester, f"@pytest.mark.arm_sim({marker})\ndef test_arm(arm_sim): pass")
     result.assert_outcomes(errors=1)
     result.stdout.fnmatch_lines([sentence])
@@ -118,7 +116,7 @@ def test_a_mistake_in_a_marker_gets_a_sentence(
     result.stdout.no_fnmatch_line("*During handling*")
 
 
-def test_a_failing_test_has_a_plot_in_its_report(pytester: pytest.Pytester):
+def test_a_failing_test_has_a_plot_in_its_report(pytester):
     result = run(
         pytester,
         """
@@ -146,14 +144,14 @@ def test_arm(arm_sim):
     assert replayed.periods == 100
 
 
-def test_the_report_for_ci_names_the_folder(pytester: pytest.Pytester):
+def test_the_report_for_ci_names_the_folder(pytester):
     run(pytester, "def test_arm(arm_sim): assert False", "--junitxml=report.xml")
     report = (pytester.path / "report.xml").read_text()
     (folder,) = re.findall('<property name="arm" value="(.*?)"', report)
     assert (Path(folder) / "joints.png").is_file()
 
 
-def test_a_test_that_fails_after_others_has_its_own_recording(pytester: pytest.Pytester):
+def test_a_test_that_fails_after_others_has_its_own_recording(pytester):
     result = run(
         pytester,
         """
@@ -176,7 +174,7 @@ def test_second(arm_sim):
     assert replayed.periods == 70
 
 
-def test_a_test_may_do_what_it_likes_with_its_simulation(pytester: pytest.Pytester):
+def test_a_test_may_do_what_it_likes_with_its_simulation(pytester):
     result = run(
         pytester,
         """
@@ -211,7 +209,7 @@ def test_still_works(arm_sim):
     result.assert_outcomes(passed=5)
 
 
-def test_a_restored_simulation_repeats_the_first_one_to_the_bit(pytester: pytest.Pytester):
+def test_a_restored_simulation_repeats_the_first_one_to_the_bit(pytester):
     result = run(
         pytester,
         """
@@ -230,7 +228,7 @@ def test_compare(arm_sim):
     result.assert_outcomes(passed=3)
 
 
-def test_a_contact_is_named(pytester: pytest.Pytester):
+def test_a_contact_is_named(pytester):
     result = run(
         pytester,
         '''

@@ -1,7 +1,5 @@
 """A run of the library is recorded, and runs again to the same bits."""
 
-from pathlib import Path
-
 import pytest
 from robots import CAN
 
@@ -13,7 +11,7 @@ from arm_sim import CallError, Simulation
 ARM = {"arguments": {"camera": "none"}}
 
 
-def test_a_recorded_run_replays_with_equal_states(tmp_path: Path):
+def test_a_recorded_run_replays_with_equal_states(tmp_path):
     with Simulation("arm", record=tmp_path / "arm.run", **ARM) as sim:
         sim["position_controller"].command([0.4, 0.3, 0.2, 0.1])
         sim.run(0.5)
@@ -29,19 +27,19 @@ def test_a_recorded_run_replays_with_equal_states(tmp_path: Path):
     assert result.periods >= 100
 
 
-def test_a_file_that_exists_is_not_overwritten(tmp_path: Path):
+def test_a_file_that_exists_is_not_overwritten(tmp_path):
     (tmp_path / "arm.run").touch()
     with pytest.raises(RecordingError, match="exists already"):
         Simulation("arm", record=tmp_path / "arm.run", **ARM)
 
 
-def test_a_recording_says_that_the_program_failed(tmp_path: Path):
+def test_a_recording_says_that_the_program_failed(tmp_path):
     with pytest.raises(CallError), Simulation("arm", record=tmp_path / "arm.run", **ARM) as sim:
         sim.run(-1.0)
     assert Replay(RunFile(tmp_path / "arm.run")).run().end_reason == "the program failed"
 
 
-def test_a_recording_begins_in_the_middle_and_may_go_back(sim: Simulation, tmp_path: Path):
+def test_a_recording_begins_in_the_middle_and_may_go_back(sim, tmp_path):
     sim["position_controller"].command([0.4, 0.3, 0.2, 0.1])
     sim.run(0.2)
     with sim.record(tmp_path / "arm.run"):

@@ -37,7 +37,7 @@ def test_the_mycobot_is_that_of_its_launch_file():
 
 
 @pytest.mark.parametrize("name", sorted(NAMED_ROBOTS))
-def test_a_named_robot_has_its_controllers_active(name: str):
+def test_a_named_robot_has_its_controllers_active(name):
     with Simulation(name) as sim:
         assert tuple(sim.controllers) == NAMED_ROBOTS[name].spawn
         assert all(controller.is_active for controller in sim.controllers.values())

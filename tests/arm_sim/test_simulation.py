@@ -5,7 +5,6 @@ import math
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -35,7 +34,7 @@ print(sorted(unneeded & set(sys.modules)), os.environ.get("MUJOCO_GL"))
 """
 
 
-def test_a_command_moves_the_joints(sim: Simulation):
+def test_a_command_moves_the_joints(sim):
     sim["position_controller"].command([1.0, 0.5, 0.1, 0.5])
     sim.run(2.0)
     assert sim.joints.position == pytest.approx([1.0, 0.5, 0.1, 0.5], abs=1e-3)
@@ -44,45 +43,45 @@ def test_a_command_moves_the_joints(sim: Simulation):
     assert np.abs(sim.joints.velocity).max() < 1e-3
 
 
-def test_a_step_is_one_control_period(sim: Simulation):
+def test_a_step_is_one_control_period(sim):
     assert sim.period_s == 0.01
     sim.step()
     assert sim.time_s == 0.01
 
 
 @pytest.mark.parametrize(("seconds", "ticks"), [(0.0, 0), (0.3, 30), (0.011, 2), (0.0001, 1)])
-def test_run_advances_to_the_tick_at_or_after_its_end(sim: Simulation, seconds: float, ticks: int):
+def test_run_advances_to_the_tick_at_or_after_its_end(sim, seconds, ticks):
     sim.run(seconds)
     assert sim.time_s == pytest.approx(ticks * 0.01)
 
 
 @pytest.mark.parametrize("seconds", [-1.0, math.nan, math.inf])
-def test_run_refuses_what_is_no_time(sim: Simulation, seconds: float):
+def test_run_refuses_what_is_no_time(sim, seconds):
     with pytest.raises(CallError, match="cannot run for"):
         sim.run(seconds)
 
 
-def test_run_until_tells_whether_the_condition_held_in_time(sim: Simulation):
+def test_run_until_tells_whether_the_condition_held_in_time(sim):
     assert sim.run_until(lambda: sim.time_s >= 0.05, timeout_s=1.0)
     assert sim.time_s == pytest.approx(0.05)
     assert not sim.run_until(lambda: False, timeout_s=0.1)
     assert sim.time_s == pytest.approx(0.15)
 
 
-def test_joints_are_a_mapping(sim: Simulation):
+def test_joints_are_a_mapping(sim):
     assert list(sim.joints) == ["j0", "j1", "j2", "j3"]
     assert len(sim.joints) == 4
     with pytest.raises(UnknownNameError, match="no joint 'j9'; the robot has j0, j1, j2, j3"):
         sim.joints["j9"]
 
 
-def test_arrays_of_joints_are_copies(sim: Simulation):
+def test_arrays_of_joints_are_copies(sim):
     position = sim.joints.position
     position[:] = 9.0
     assert sim.joints.position == pytest.approx(0.0, abs=1e-6)
 
 
-def test_an_unknown_controller_is_named_with_those_that_are_loaded(sim: Simulation):
+def test_an_unknown_controller_is_named_with_those_that_are_loaded(sim):
     with pytest.raises(
         UnknownNameError,
         match="no controller 'x'; loaded: joint_state_broadcaster, position_controller",
@@ -97,19 +96,19 @@ def test_an_unknown_controller_is_named_with_those_that_are_loaded(sim: Simulati
         ([0.0, 0.0, math.nan, 0.0], "a command with a NaN or an infinity was dropped"),
     ],
 )
-def test_a_bad_command_is_refused_at_once(sim: Simulation, values: list[float], message: str):
+def test_a_bad_command_is_refused_at_once(sim, values, message):
     with pytest.raises(ControllerError, match=message):
         sim["position_controller"].command(values)
 
 
-def test_a_broadcaster_takes_no_commands(sim: Simulation):
+def test_a_broadcaster_takes_no_commands(sim):
     with pytest.raises(
         ControllerError, match="controller 'joint_state_broadcaster' takes no commands"
     ):
         sim["joint_state_broadcaster"].command([1.0])
 
 
-def test_controllers_are_switched_and_started_later(sim: Simulation):
+def test_controllers_are_switched_and_started_later(sim):
     with pytest.raises(ArmControlError):
         sim.controllers.start("joint_trajectory_controller")
     assert sim["joint_trajectory_controller"].state is LifecycleState.INACTIVE
@@ -127,9 +126,7 @@ def test_a_closed_simulation_says_so():
         sim.step()
 
 
-def test_commands_beyond_a_limit_are_logged_as_the_node_does(
-    sim: Simulation, caplog: pytest.LogCaptureFixture
-):
+def test_commands_beyond_a_limit_are_logged_as_the_node_does(sim, caplog):
     sim["position_controller"].command([0.0, 9.0, 0.0, 0.0])
     with caplog.at_level(logging.WARNING, "arm_sim"):
         sim.run(0.1)
@@ -148,9 +145,7 @@ def test_commands_beyond_a_limit_are_logged_as_the_node_does(
         ("arm", {"seed": 0.5}, ParameterValueError, "seed must be a whole number"),
     ],
 )
-def test_bad_arguments_get_the_sentences_of_the_node(
-    description: str, options: dict, error: type[Exception], message: str
-):
+def test_bad_arguments_get_the_sentences_of_the_node(description, options, error, message):
     with pytest.raises(error, match=message):
         Simulation(description, **options)
 
@@ -177,9 +172,7 @@ def failing(time_s: float, period_s: float) -> None:
     raise ZeroDivisionError("by nothing")
 
 
-def test_a_controller_that_raises_is_stopped_and_logged_as_in_the_node(
-    sim: Simulation, caplog: pytest.LogCaptureFixture
-):
+def test_a_controller_that_raises_is_stopped_and_logged_as_in_the_node(sim, caplog):
     sim["position_controller"].core.update = failing
     sim.step()
     assert sim["position_controller"].state is LifecycleState.INACTIVE
@@ -187,7 +180,7 @@ def test_a_controller_that_raises_is_stopped_and_logged_as_in_the_node(
     sim.run(0.1)
 
 
-def test_it_raises_where_the_parameters_ask_for_that(tmp_path: Path):
+def test_it_raises_where_the_parameters_ask_for_that(tmp_path):
     file = tmp_path / "controllers.yaml"
     file.write_text(
         "controller_manager: {ros__parameters: {handle_exceptions: false, position_controller: "

@@ -1,7 +1,5 @@
 """A simulation goes back to a saved state, or to its start, and repeats from there to the bit."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from robots import CAN, control, pendulum, sensor
@@ -63,7 +61,7 @@ def test_a_goal_that_the_state_does_not_have_is_aborted():
         sim.follow(FOLLOWER, JointTrajectory([0.2], [[0.1, 0.1, 0.1, 0.1]]))
 
 
-def test_things_come_and_go_with_the_state(sim: Simulation):
+def test_things_come_and_go_with_the_state(sim):
     before = sim.save()
     sim.spawn(CAN, pose=(0.6, 0.2, 0.3))
     sim.run(0.1)
@@ -77,7 +75,7 @@ def test_things_come_and_go_with_the_state(sim: Simulation):
     assert course(sim) == first
 
 
-def test_a_reset_simulation_repeats_its_first_run_to_the_bit(sim: Simulation):
+def test_a_reset_simulation_repeats_its_first_run_to_the_bit(sim):
     def run() -> list[list[float]]:
         sim["position_controller"].command([1.0, 0.5, 0.1, 0.5])
         return course(sim)
@@ -90,7 +88,7 @@ def test_a_reset_simulation_repeats_its_first_run_to_the_bit(sim: Simulation):
     assert run() == first
 
 
-def test_a_reset_with_a_seed_is_a_new_simulation_with_this_seed(tmp_path: Path):
+def test_a_reset_with_a_seed_is_a_new_simulation_with_this_seed(tmp_path):
     file = tmp_path / "noisy.urdf"
     file.write_text(NOISY)
 
@@ -110,23 +108,23 @@ def test_a_reset_with_a_seed_is_a_new_simulation_with_this_seed(tmp_path: Path):
         assert readings(sim) == third
 
 
-def test_a_snapshot_belongs_to_its_simulation(sim: Simulation):
+def test_a_snapshot_belongs_to_its_simulation(sim):
     with follower() as other, pytest.raises(CallError, match="saved by another simulation"):
         sim.restore(other.save())
 
 
-def test_a_recorded_run_keeps_its_seed(sim: Simulation, tmp_path: Path):
+def test_a_recorded_run_keeps_its_seed(sim, tmp_path):
     with sim.record(tmp_path / "arm.run"), pytest.raises(CallError, match="keeps its seed"):
         sim.reset(seed=1)
 
 
-def test_what_cannot_be_saved_is_named(sim: Simulation):
+def test_what_cannot_be_saved_is_named(sim):
     sim["position_controller"].core.secret = lambda: None
     with pytest.raises(StateError, match="'position_controller' cannot be saved: its attribute"):
         sim.save()
 
 
-def test_a_thousand_restores_end_where_one_does(sim: Simulation):
+def test_a_thousand_restores_end_where_one_does(sim):
     sim["position_controller"].command([0.5, 0.5, 0.1, 0.5])
     sim.run(0.1)
     here = sim.save()
@@ -138,7 +136,7 @@ def test_a_thousand_restores_end_where_one_does(sim: Simulation):
     assert np.array_equal(course(sim, 3), first)
 
 
-def test_a_file_brings_another_simulation_to_the_state(tmp_path: Path):
+def test_a_file_brings_another_simulation_to_the_state(tmp_path):
     file = tmp_path / "here.snapshot"
     with follower() as sim:
         sim[FOLLOWER].follow(JointTrajectory([0.5], [[0.3, 0.4, -0.2, 0.1]]))
@@ -153,7 +151,7 @@ def test_a_file_brings_another_simulation_to_the_state(tmp_path: Path):
         assert course(other) == first
 
 
-def test_a_file_of_another_robot_is_refused(sim: Simulation, tmp_path: Path):
+def test_a_file_of_another_robot_is_refused(sim, tmp_path):
     sim.save(tmp_path / "arm.snapshot")
     with (
         Simulation("mycobot") as other,

@@ -1,7 +1,5 @@
 """State interfaces and sensor readings."""
 
-from pathlib import Path
-
 import pytest
 from robots import pendulum, sensor
 
@@ -10,7 +8,7 @@ from arm_sim import Simulation, UnknownNameError
 IMU = pendulum(sensor("bob", "imu", "imu", "<always_on>1</always_on>"), name="box")
 
 
-def test_states_are_those_that_controllers_read(sim: Simulation):
+def test_states_are_those_that_controllers_read(sim):
     sim["position_controller"].command([0.5, 0.0, 0.0, 0.0])
     sim.run(1.0)
     assert sim.states["j0/position"] == sim.joints["j0"].position
@@ -20,7 +18,7 @@ def test_states_are_those_that_controllers_read(sim: Simulation):
         sim.states["j9/position"]
 
 
-def test_a_sensor_is_read_by_its_channels(tmp_path: Path):
+def test_a_sensor_is_read_by_its_channels(tmp_path):
     file = tmp_path / "box.urdf"
     file.write_text(IMU)
     with Simulation(file) as sim:

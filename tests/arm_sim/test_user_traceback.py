@@ -18,7 +18,7 @@ def files_of(error: BaseException) -> list[str]:
 HERE = Path(__file__).name
 
 
-def test_an_error_of_a_method_ends_here_without_a_cause(sim: Simulation):
+def test_an_error_of_a_method_ends_here_without_a_cause(sim):
     with pytest.raises(RequestError, match=r"no file for 'can\.sdf'") as raised:
         sim.spawn("can.sdf")
     assert files_of(raised.value) == [HERE]
@@ -26,7 +26,7 @@ def test_an_error_of_a_method_ends_here_without_a_cause(sim: Simulation):
     assert "direct cause" not in "".join(traceback.format_exception(raised.value))
 
 
-def test_so_do_those_of_the_constructor_of_items_and_of_what_items_offer(sim: Simulation):
+def test_so_do_those_of_the_constructor_of_items_and_of_what_items_offer(sim):
     with pytest.raises(Exception, match="nothing_there") as raised:
         Simulation("nothing_there.urdf")
     assert files_of(raised.value) == [HERE]
@@ -38,7 +38,7 @@ def test_so_do_those_of_the_constructor_of_items_and_of_what_items_offer(sim: Si
     assert files_of(raised.value) == [HERE]
 
 
-def test_a_condition_of_the_caller_stays_in_the_traceback(sim: Simulation):
+def test_a_condition_of_the_caller_stays_in_the_traceback(sim):
     def condition() -> bool:
         return bool(sim.contacts("nobody"))
 
@@ -75,7 +75,7 @@ def test_a_cause_in_the_callers_code_stays():
     assert len(files_of(fault.value)) == 3
 
 
-def test_arguments_that_do_not_fit_are_shown_where_they_are_given(sim: Simulation):
+def test_arguments_that_do_not_fit_are_shown_where_they_are_given(sim):
     with pytest.raises(TypeError, match="spawn") as raised:
         sim.spawn("can", "can.sdf")  # pyright: ignore[reportCallIssue]
     assert files_of(raised.value) == [HERE]

@@ -5,10 +5,10 @@ import pytest
 from robots import CAN
 
 from arm_gazebo.errors import RequestError
-from arm_sim import CallError, Simulation
+from arm_sim import CallError
 
 
-def test_a_spawned_thing_falls_and_rests_on_the_floor(sim: Simulation):
+def test_a_spawned_thing_falls_and_rests_on_the_floor(sim):
     assert sim.spawn(CAN, pose=(0.6, 0.2, 0.2)) == "can"
     assert "can" in sim.entities
     assert sim.pose("can")[:3, 3] == pytest.approx([0.6, 0.2, 0.2])
@@ -21,14 +21,14 @@ def test_a_spawned_thing_falls_and_rests_on_the_floor(sim: Simulation):
     assert all(contact.normal == pytest.approx([0, 0, 1], abs=1e-3) for contact in contacts)
 
 
-def test_the_floor_feels_the_opposite_force(sim: Simulation):
+def test_the_floor_feels_the_opposite_force(sim):
     sim.spawn(CAN, pose=(0.6, 0.2, 0.05))
     sim.run(0.5)
     contacts = [contact for contact in sim.contacts("world") if "can" in contact.other]
     assert sum(contact.force for contact in contacts) == pytest.approx([0, 0, -0.981], abs=0.02)
 
 
-def test_a_file_is_spawned_by_its_path(sim: Simulation, tmp_path):
+def test_a_file_is_spawned_by_its_path(sim, tmp_path):
     file = tmp_path / "can.sdf"
     file.write_text(CAN)
     assert sim.spawn(file, name="tin", pose=(0.6, 0, 0.05)) == "tin"
@@ -36,7 +36,7 @@ def test_a_file_is_spawned_by_its_path(sim: Simulation, tmp_path):
     assert sim.spawn(file, pose=(0.9, 0, 0.05)) == "can_2"
 
 
-def test_joints_are_the_same_after_the_world_has_changed(sim: Simulation):
+def test_joints_are_the_same_after_the_world_has_changed(sim):
     sim["position_controller"].command([1.0, 0.5, 0.1, 0.5])
     sim.run(2.0)
     before = sim.joints.position
@@ -55,7 +55,7 @@ def test_joints_are_the_same_after_the_world_has_changed(sim: Simulation):
         [[0, -1, 0, 0.7], [1, 0, 0, 0.1], [0, 0, 1, 0.3], [0, 0, 0, 1]],
     ],
 )
-def test_a_pose_may_be_written_in_several_ways(sim: Simulation, pose):
+def test_a_pose_may_be_written_in_several_ways(sim, pose):
     sim.spawn(CAN)
     sim.place("can", pose)
     expected = [[0, -1, 0, 0.7], [1, 0, 0, 0.1], [0, 0, 1, 0.3], [0, 0, 0, 1]]
@@ -65,18 +65,18 @@ def test_a_pose_may_be_written_in_several_ways(sim: Simulation, pose):
 @pytest.mark.parametrize(
     "pose", ["here", (1, 2), (0, 0, np.nan), np.zeros((4, 4)), np.diag([1, 1, -1, 1]), (0,) * 7]
 )
-def test_a_bad_pose_gets_a_sentence(sim: Simulation, pose):
+def test_a_bad_pose_gets_a_sentence(sim, pose):
     with pytest.raises(CallError, match="a pose is x y z, x y z roll pitch yaw"):
         sim.spawn(CAN, pose=pose)
 
 
-def test_poses_are_seen_from_frames(sim: Simulation):
+def test_poses_are_seen_from_frames(sim):
     sim.spawn(CAN, pose=(0.0, 0.0, 0.5), frame="dyn3")
     sim.place("can", (0.1, 0.0, 0.0), frame="dyn3")
     assert sim.pose("can", frame="dyn3")[:3, 3] == pytest.approx([0.1, 0, 0], abs=1e-9)
 
 
-def test_a_deleted_thing_is_gone(sim: Simulation):
+def test_a_deleted_thing_is_gone(sim):
     sim.spawn(CAN, pose=(0.6, 0.2, 0.2))
     sim.delete("can")
     assert "can" not in sim.entities
@@ -84,7 +84,7 @@ def test_a_deleted_thing_is_gone(sim: Simulation):
         sim.delete("can")
 
 
-def test_what_does_not_exist_gets_the_sentence_of_the_node(sim: Simulation):
+def test_what_does_not_exist_gets_the_sentence_of_the_node(sim):
     with pytest.raises(RequestError, match="no frame 'moon'"):
         sim.pose("moon")
     with pytest.raises(RequestError, match="no entity or link 'moon'; there are arm"):

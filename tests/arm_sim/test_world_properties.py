@@ -1,7 +1,5 @@
 """Gravity, mass and friction are changed while the simulation runs."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -35,7 +33,7 @@ def slide_m(sim: Simulation) -> float:
     return float(sim.pose("box")[0, 3] - before)
 
 
-def test_things_fall_under_the_gravity_that_is_set(sim: Simulation):
+def test_things_fall_under_the_gravity_that_is_set(sim):
     assert sim.gravity == pytest.approx([0, 0, -9.81])
     assert fall_m(sim, 0.3) == pytest.approx(9.81 * 0.2**2 / 2, rel=0.03)
     sim.set_gravity(MOON)
@@ -45,7 +43,7 @@ def test_things_fall_under_the_gravity_that_is_set(sim: Simulation):
     assert fall_m(sim, 0.9) == 0.0
 
 
-def test_joints_that_are_too_weak_for_the_gravity_are_logged_once(sim: Simulation, caplog):
+def test_joints_that_are_too_weak_for_the_gravity_are_logged_once(sim, caplog):
     sim.set_gravity((0.0, 0.0, -100.0))
     weak = [r.message for r in caplog.records if "effort limit" in r.message]
     assert [message.split(":")[0] for message in weak] == ["joint 'j1'", "joint 'j2'"]
@@ -56,7 +54,7 @@ def test_joints_that_are_too_weak_for_the_gravity_are_logged_once(sim: Simulatio
     assert not [r for r in caplog.records if "effort limit" in r.message]
 
 
-def test_a_resting_thing_wakes_when_gravity_turns(sim: Simulation):
+def test_a_resting_thing_wakes_when_gravity_turns(sim):
     sim.spawn(BOX, pose=(0.7, 0.3, 0.05))
     sim.run(5.0)
     sim.set_gravity((0.0, 0.0, 9.81))
@@ -64,7 +62,7 @@ def test_a_resting_thing_wakes_when_gravity_turns(sim: Simulation):
     assert sim.pose("box")[2, 3] > 1.0
 
 
-def test_a_thing_slides_below_its_friction(sim: Simulation):
+def test_a_thing_slides_below_its_friction(sim):
     sim.spawn(BOX, pose=(0.7, 0.3, 0.05))
     sim.run(0.5)
     assert sim.properties("box").friction == 1.0
@@ -76,7 +74,7 @@ def test_a_thing_slides_below_its_friction(sim: Simulation):
     assert slide_m(sim) == pytest.approx(way_m, rel=0.05)
 
 
-def test_a_heavier_thing_weighs_more(sim: Simulation):
+def test_a_heavier_thing_weighs_more(sim):
     sim.spawn(BOX, pose=(0.7, 0.3, 0.05))
     assert sim.properties("box").mass_kg == 0.5
     sim.set_properties("box", mass_kg=0.3)
@@ -86,7 +84,7 @@ def test_a_heavier_thing_weighs_more(sim: Simulation):
     assert force[2] == pytest.approx(0.3 * 9.81, rel=0.02)
 
 
-def test_robots_things_that_do_not_move_and_unknown_ones_are_refused(sim: Simulation):
+def test_robots_things_that_do_not_move_and_unknown_ones_are_refused(sim):
     sim.spawn(WALL, pose=(0.7, 0.3, 0.05))
     assert sim.properties("wall").mass_kg is None
     with pytest.raises(RequestError, match="'wall' is fixed to the world: its mass has no effect"):
@@ -100,7 +98,7 @@ def test_robots_things_that_do_not_move_and_unknown_ones_are_refused(sim: Simula
 
 
 @pytest.mark.parametrize("mass", [0.0, -1.0, float("nan"), float("inf"), 1e9, "heavy"])
-def test_a_bad_mass_is_refused_and_the_old_one_stays(sim: Simulation, mass):
+def test_a_bad_mass_is_refused_and_the_old_one_stays(sim, mass):
     sim.spawn(BOX, pose=(0.7, 0.3, 0.05))
     with pytest.raises(RequestError, match=r"the mass of 'box' is 1e-06 to 1e\+06 kg, not "):
         sim.set_properties("box", mass_kg=mass, friction=0.3)
@@ -109,20 +107,20 @@ def test_a_bad_mass_is_refused_and_the_old_one_stays(sim: Simulation, mass):
 
 
 @pytest.mark.parametrize("friction", [-0.1, float("nan"), float("inf"), 1000.0])
-def test_a_bad_friction_is_refused(sim: Simulation, friction):
+def test_a_bad_friction_is_refused(sim, friction):
     sim.spawn(BOX, pose=(0.7, 0.3, 0.05))
     with pytest.raises(RequestError, match="the friction of 'box' is 0 to 100, not "):
         sim.set_properties("box", friction=friction)
 
 
 @pytest.mark.parametrize("gravity", [(0, 0), (0, 0, float("nan")), (0, 0, -200.0), 9.81, "down"])
-def test_a_bad_gravity_is_refused(sim: Simulation, gravity):
+def test_a_bad_gravity_is_refused(sim, gravity):
     with pytest.raises(RequestError, match="the gravity is three numbers x y z from -100 to 100"):
         sim.set_gravity(gravity)
     assert sim.gravity == pytest.approx([0, 0, -9.81])
 
 
-def test_what_is_set_outlives_a_change_of_the_world(sim: Simulation):
+def test_what_is_set_outlives_a_change_of_the_world(sim):
     sim.spawn(BOX, pose=(0.7, 0.3, 0.05))
     sim.set_gravity(MOON)
     sim.set_properties("box", mass_kg=0.2, friction=0.4)
@@ -136,7 +134,7 @@ def test_what_is_set_outlives_a_change_of_the_world(sim: Simulation):
     assert force[2] == pytest.approx(0.2 * 1.62, rel=0.03)
 
 
-def test_a_thing_that_is_deleted_takes_its_properties_along(sim: Simulation):
+def test_a_thing_that_is_deleted_takes_its_properties_along(sim):
     sim.spawn(BOX, pose=(0.7, 0.3, 0.05))
     sim.set_properties("box", mass_kg=0.2)
     sim.delete("box")
@@ -144,7 +142,7 @@ def test_a_thing_that_is_deleted_takes_its_properties_along(sim: Simulation):
     assert sim.properties("box").mass_kg == 0.5
 
 
-def test_a_state_has_the_properties_of_its_time(sim: Simulation):
+def test_a_state_has_the_properties_of_its_time(sim):
     sim.spawn(BOX, pose=(0.7, 0.3, 0.5))
     own = sim.save()
     sim.run(0.2)
@@ -166,7 +164,7 @@ def test_a_state_has_the_properties_of_its_time(sim: Simulation):
     assert sim.parts.state.digest() == expected_light
 
 
-def test_a_snapshot_in_a_file_has_them(sim: Simulation, tmp_path: Path):
+def test_a_snapshot_in_a_file_has_them(sim, tmp_path):
     sim.spawn(BOX, pose=(0.7, 0.3, 0.5))
     sim.set_gravity(MOON)
     sim.set_properties("box", mass_kg=0.2)
@@ -181,7 +179,7 @@ def test_a_snapshot_in_a_file_has_them(sim: Simulation, tmp_path: Path):
         assert other.pose("box")[2, 3] == height
 
 
-def test_reset_puts_the_own_properties_back(sim: Simulation):
+def test_reset_puts_the_own_properties_back(sim):
     sim.set_gravity(MOON)
     sim.reset()
     assert sim.gravity == pytest.approx([0, 0, -9.81])
@@ -208,7 +206,7 @@ def test_a_reset_of_what_was_spawned_puts_the_own_properties_back(scope, kept):
         assert (sim.properties("red_box").mass_kg == own_kg) is not kept
 
 
-def test_a_recorded_run_repeats_with_them_to_the_bit(tmp_path: Path):
+def test_a_recorded_run_repeats_with_them_to_the_bit(tmp_path):
     arm = {"arguments": {"camera": "none"}}
     with Simulation("arm", world="objects", record=tmp_path / "a.run", **arm) as sim:
         reset = RunReset(sim.parts.state, sim.parts.editor, lambda: True, lambda: None)
@@ -233,7 +231,7 @@ def test_a_recorded_run_repeats_with_them_to_the_bit(tmp_path: Path):
     assert result.periods >= 100
 
 
-def test_a_recording_begins_with_them(sim: Simulation, tmp_path: Path):
+def test_a_recording_begins_with_them(sim, tmp_path):
     sim.spawn(BOX, pose=(0.7, 0.3, 0.3))
     sim.set_gravity(MOON)
     sim.set_properties("box", mass_kg=0.02, friction=0.05)

@@ -21,9 +21,7 @@ RUNNING_PAGES = [page for page in PAGES if "```console" in page.read_text()]
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("page", RUNNING_PAGES, ids=lambda page: page.stem)
-def test_the_commands_of_a_page_print_what_it_says(
-    page: Path, folder: Path, background: Background
-):
+def test_the_commands_of_a_page_print_what_it_says(page, folder, background):
     for block in blocks_of(page):
         if block.title:
             (folder / block.title).write_text(block.text)
@@ -71,7 +69,7 @@ def at_a_terminal(
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_blocks_that_are_files_are_well_formed(page: Path):
+def test_blocks_that_are_files_are_well_formed(page):
     for block in blocks_of(page):
         assert block.language in LANGUAGES, block.place
         if block.language == "python":
@@ -110,9 +108,7 @@ def listed(what: str, folder: Path) -> dict[str, str]:
 
 
 @pytest.mark.ros
-def test_the_tables_of_topics_and_services_are_those_of_a_running_arm(
-    folder: Path, background: Background
-):
+def test_the_tables_of_topics_and_services_are_those_of_a_running_arm(folder, background):
     background.start("arm launch", ())
     topics, services = rows_of("msg"), rows_of("srv")
     assert len(topics) > 15

@@ -140,7 +140,7 @@ TRIED: dict[str, Callable[[], None]] = {
 
 
 @pytest.mark.parametrize("line", LINE.findall(PAGE.read_text()))
-def test_a_line_of_the_table_holds(line: str):
+def test_a_line_of_the_table_holds(line):
     assert_line_holds = TRIED[line]
     assert_line_holds()
 

@@ -1,7 +1,5 @@
 """The example's controller, on fake hardware."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -23,14 +21,14 @@ def hardware() -> FakeHardware:
 
 
 @pytest.fixture
-def controller() -> Any:
+def controller():
     from servo_arm.pd_controller import PdController
 
     return PdController(ControllerContext("pd", 100))
 
 
 @pytest.fixture
-def manager(hardware: FakeHardware, controller: Any) -> ControllerManager:
+def manager(hardware, controller) -> ControllerManager:
     manager = ControllerManager([hardware], 100)
     manager.bring_up()
     manager.load_controller(controller, "servo_arm/PdController", ())
@@ -40,15 +38,13 @@ def manager(hardware: FakeHardware, controller: Any) -> ControllerManager:
     return manager
 
 
-def test_it_pulls_to_the_target_and_brakes(manager: ControllerManager, hardware: FakeHardware):
+def test_it_pulls_to_the_target_and_brakes(manager, hardware):
     hardware.states[:] = (0.5, 0.1, 2.0, 0.0)
     manager.update(0.0, 0.01)
     assert hardware.commands == pytest.approx([2.0 * 0.5 - 0.5 * 0.1, -2.0])
 
 
-def test_its_parameters_change_under_way(
-    manager: ControllerManager, hardware: FakeHardware, controller: Any
-):
+def test_its_parameters_change_under_way(manager, hardware, controller):
     values = {"joints": ("j0", "j1"), "target": 0.0, "p": 1.0, "d": 0.0}
     controller.update_parameters(controller.build_parameters(values))
     hardware.states[:] = (0.5, 0.1, 2.0, 0.0)
@@ -56,7 +52,7 @@ def test_its_parameters_change_under_way(
     assert hardware.commands == pytest.approx([-0.5, -2.0])
 
 
-def test_it_lets_go_at_the_end(manager: ControllerManager, hardware: FakeHardware):
+def test_it_lets_go_at_the_end(manager, hardware):
     manager.update(0.0, 0.01)
     assert np.abs(hardware.commands).min() > 0.0
     assert manager.switch_controller(SwitchRequest(deactivate=("pd",))).ok
@@ -64,6 +60,6 @@ def test_it_lets_go_at_the_end(manager: ControllerManager, hardware: FakeHardwar
     assert manager.list_controllers()[0].state is LifecycleState.INACTIVE
 
 
-def test_it_has_no_parameters_before_it_is_configured(controller: Any):
+def test_it_has_no_parameters_before_it_is_configured(controller):
     with pytest.raises(ControllerError, match="controller 'pd' is not configured"):
         _ = controller.parameters

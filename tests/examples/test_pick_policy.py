@@ -10,7 +10,7 @@ PICKS, NEEDED = 4, 0.7
 
 
 @pytest.fixture(autouse=True)
-def _from_the_examples_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+def _from_the_examples_folder(monkeypatch) -> None:
     monkeypatch.syspath_prepend(str(EXAMPLE))
 
 
@@ -25,7 +25,7 @@ def test_the_policy_lifts_the_cylinder_where_the_expert_never_showed_it():
     env.close()
 
 
-def test_a_demonstration_is_learned_and_training_repeats(tmp_path: Path):
+def test_a_demonstration_is_learned_and_training_repeats(tmp_path):
     import imitate
     from pick_curve import Epoch, draw, write
     from pick_policy import CHUNK, JOINTS, load, save

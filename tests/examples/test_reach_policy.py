@@ -12,7 +12,7 @@ NEEDED = 0.95
 
 
 @pytest.fixture(autouse=True)
-def _from_the_examples_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+def _from_the_examples_folder(monkeypatch) -> None:
     monkeypatch.syspath_prepend(str(EXAMPLE))
 
 
@@ -37,7 +37,7 @@ def test_the_policy_reaches_goals_that_it_was_not_trained_with():
 
 
 @pytest.mark.filterwarnings("ignore:Could not import matplotlib")
-def test_training_repeats_with_its_seed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_training_repeats_with_its_seed(tmp_path, monkeypatch):
     import train
     from curve import draw, write
 

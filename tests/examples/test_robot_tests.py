@@ -15,7 +15,7 @@ TIMEOUT_S = 500.0
 
 
 @pytest.fixture
-def copied(tmp_path: Path) -> Path:
+def copied(tmp_path) -> Path:
     """The folder as a user has it after copying it."""
     target = tmp_path / "patrol"
     shutil.copytree(TEMPLATE, target)
@@ -39,7 +39,7 @@ def run_tests(folder: Path, file: str) -> str:
     return done.stdout
 
 
-def test_its_decisions_pass_their_tests(copied: Path):
+def test_its_decisions_pass_their_tests(copied):
     assert re.search(r"\b5 passed", run_tests(copied, "tests/test_motion.py"))
     assert not (copied / "arm-artifacts").exists()
 
@@ -47,7 +47,7 @@ def test_its_decisions_pass_their_tests(copied: Path):
 @pytest.mark.ros
 @pytest.mark.slow
 @pytest.mark.timeout(600)
-def test_its_node_passes_its_tests(copied: Path):
+def test_its_node_passes_its_tests(copied):
     assert re.search(r"\b3 passed", run_tests(copied, "tests/test_node.py"))
 
 

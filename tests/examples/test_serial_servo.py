@@ -4,27 +4,24 @@ import os
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from arm_control import HardwareReturn
-from arm_control.hardware.driver import SystemInterface
 
-Info = Callable[..., Any]
 TIMEOUT_S = 60.0
 
 
 @pytest.fixture
-def servo(port: Path, servo_info: Info) -> Any:
+def servo(port, servo_info):
     from servo_arm.serial_servo import SerialServo
 
     return SerialServo(servo_info(port))
 
 
 @pytest.fixture
-def silent_port(tmp_path: Path) -> Iterator[Path]:
+def silent_port(tmp_path) -> Iterator[Path]:
     """Return a port behind which nobody answers."""
     from servo_arm.fake_servo import pseudo_terminal
 
@@ -33,7 +30,7 @@ def silent_port(tmp_path: Path) -> Iterator[Path]:
         yield link
 
 
-def test_efforts_move_the_joints(servo: SystemInterface):
+def test_efforts_move_the_joints(servo):
     assert servo.on_configure()
     assert servo.on_activate()
     servo.commands[:] = (0.5, -0.5)
@@ -46,7 +43,7 @@ def test_efforts_move_the_joints(servo: SystemInterface):
     assert servo.on_shutdown()
 
 
-def test_no_command_is_no_effort(servo: SystemInterface):
+def test_no_command_is_no_effort(servo):
     assert servo.on_configure()
     assert servo.on_activate()
     assert np.isnan(servo.commands).all()
@@ -56,9 +53,7 @@ def test_no_command_is_no_effort(servo: SystemInterface):
     assert servo.on_shutdown()
 
 
-def test_a_port_that_is_not_there_is_named(
-    tmp_path: Path, servo_info: Info, caplog: pytest.LogCaptureFixture
-):
+def test_a_port_that_is_not_there_is_named(tmp_path, servo_info, caplog):
     from servo_arm.serial_servo import SerialServo
 
     missing = SerialServo(servo_info(tmp_path / "nothing"))
@@ -67,7 +62,7 @@ def test_a_port_that_is_not_there_is_named(
     assert f"cannot open {tmp_path / 'nothing'}: No such file or directory" in caplog.text
 
 
-def test_silence_is_an_error(silent_port: Path, servo_info: Info, caplog: pytest.LogCaptureFixture):
+def test_silence_is_an_error(silent_port, servo_info, caplog):
     from servo_arm.serial_servo import SerialServo
 
     silent = SerialServo(servo_info(silent_port, timeout_s=0.01))
@@ -77,9 +72,7 @@ def test_silence_is_an_error(silent_port: Path, servo_info: Info, caplog: pytest
     assert silent.on_cleanup()
 
 
-def test_a_servo_that_goes_away_is_an_error_and_can_come_back(
-    tmp_path: Path, servo_info: Info, caplog: pytest.LogCaptureFixture
-):
+def test_a_servo_that_goes_away_is_an_error_and_can_come_back(tmp_path, servo_info, caplog):
     from servo_arm.fake_servo import pseudo_terminal, serve
     from servo_arm.serial_servo import SerialServo
 
@@ -99,7 +92,7 @@ def test_a_servo_that_goes_away_is_an_error_and_can_come_back(
     assert str(link) in caplog.text
 
 
-def test_nonsense_is_an_error(tmp_path: Path, servo_info: Info, caplog: pytest.LogCaptureFixture):
+def test_nonsense_is_an_error(tmp_path, servo_info, caplog):
     from servo_arm.fake_servo import pseudo_terminal
     from servo_arm.serial_servo import SerialServo
 
@@ -128,7 +121,7 @@ def test_the_fake_lets_go_without_commands():
 
 
 @pytest.mark.parametrize("request_line", ["", "jump", "set 1.0 2.0", "set x"])
-def test_the_fake_answers_what_it_does_not_understand(request_line: str):
+def test_the_fake_answers_what_it_does_not_understand(request_line):
     from servo_arm.fake_servo import Motors
 
     assert Motors(1, 0.0).answer(request_line, 0.0).startswith("error: ")

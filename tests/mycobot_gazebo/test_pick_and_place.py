@@ -39,12 +39,12 @@ def description() -> str:
 
 
 @pytest.fixture(scope="module")
-def links(description: str) -> frozenset[str]:
+def links(description) -> frozenset[str]:
     return frozenset(link.name for link in parse_urdf(description).links)
 
 
 @pytest.fixture(scope="module")
-def plan(description: str) -> PickPlan:
+def plan(description) -> PickPlan:
     return plan_pick(description, PickTask())
 
 

@@ -51,7 +51,7 @@ def test_the_groups_share_the_joints():
 
 
 @pytest.mark.parametrize("name", ["arm", "gripper", "arm_with_gripper"])
-def test_named_states_give_each_joint_a_position_within_its_limits(name: str):
+def test_named_states_give_each_joint_a_position_within_its_limits(name):
     model = files()[0]
     group = model.group(name)
     states = [state for (owner, _), state in model.states.items() if owner == name]

@@ -1,8 +1,7 @@
 """The pages of the 4-DOF arm, each from its first line to its last."""
 
 import pytest
-from originals_table import Row
-from walk import Walk, rows_of
+from walk import rows_of
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow, pytest.mark.timeout(600)]
 
@@ -14,5 +13,5 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow, pytest.mark.timeout(600)]
         for page, row in rows_of("S0", "S1", "S2", "S3")
     ],
 )
-def test_a_row_comes_as_the_table_says(walk: Walk, page: str, row: Row):
+def test_a_row_comes_as_the_table_says(walk, page, row):
     walk.assert_row(page, row)

@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from originals_table import PAGES, Row, read_parts, table_page
+from originals_table import PAGES, read_parts, table_page
 
 ROOT = Path(__file__).parents[2]
 ROWS = [row for part in read_parts() for row in part.rows]
@@ -30,7 +30,7 @@ def test_every_row_of_the_originals_is_there_once():
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
-def test_a_row_has_a_line_or_a_test_that_there_is(row: Row):
+def test_a_row_has_a_line_or_a_test_that_there_is(row):
     assert row.what
     assert row.steps or row.tests
     assert set(row.pages) <= set(PAGES)
@@ -40,7 +40,7 @@ def test_a_row_has_a_line_or_a_test_that_there_is(row: Row):
 
 
 @pytest.mark.parametrize(("row", "step"), STEPS, ids=[f"{name}-{s.kind}" for name, s in STEPS])
-def test_something_must_come_of_every_line(row: str, step):
+def test_something_must_come_of_every_line(row, step):
     assert step.shows or step.reaches
     # What shows anything at all proves nothing.
     assert not any(set(line) <= {".", " "} for line in step.shows)

@@ -131,7 +131,7 @@ def test_every_distribution_that_the_product_imports_is_declared():
 
 
 @pytest.mark.parametrize(("part", "needed"), OPTIONAL.items())
-def test_what_an_optional_part_imports_is_in_its_extras(part: str, needed: list[str]):
+def test_what_an_optional_part_imports_is_in_its_extras(part, needed):
     extras = {
         canonicalize_name(Requirement(each).name) for extra in needed for each in EXTRAS[extra]
     }
@@ -166,7 +166,7 @@ def test_the_manual_says_what_each_dependency_is_for():
 
 
 @pytest.mark.parametrize(("extra", "folder"), INTERFACES.items())
-def test_an_extra_names_the_interfaces_of_this_checkout(extra: str, folder: str):
+def test_an_extra_names_the_interfaces_of_this_checkout(extra, folder):
     project = tomllib.loads((ROOT / folder / "pyproject.toml").read_text())["project"]
     assert EXTRAS[extra] == [f"{project['name']}=={project['version']}"]
     assert canonicalize_name(folder) == project["name"]

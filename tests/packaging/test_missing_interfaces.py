@@ -48,7 +48,7 @@ PLAIN = "arm_controller."
 
 
 @pytest.fixture
-def run_without_interfaces(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+def run_without_interfaces(tmp_path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Run a console script where interface packages are hidden, by default the suite's own."""
 
     def run(

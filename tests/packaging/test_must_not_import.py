@@ -56,7 +56,7 @@ def test_the_table_has_every_package_and_only_rules_that_this_test_knows():
 
 
 @pytest.mark.parametrize("folder", RULES)
-def test_a_folder_imports_nothing_that_its_row_forbids(folder: str):
+def test_a_folder_imports_nothing_that_its_row_forbids(folder):
     wrong = [
         f"{file.relative_to(ROOT)}: {module}"
         for file, module in imported(ROOT / folder)

@@ -14,13 +14,13 @@ FOLDERS = sorted(
 
 
 @pytest.fixture(params=FOLDERS, ids=lambda folder: folder.name)
-def folder(request: pytest.FixtureRequest) -> Path:
+def folder(request) -> Path:
     """Return the folder of a package."""
     return request.param
 
 
 @pytest.fixture
-def given(folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+def given(folder, monkeypatch) -> dict[str, Any]:
     """Return what setup.py gives to setuptools."""
     words: dict[str, Any] = {}
     monkeypatch.chdir(folder)
@@ -29,7 +29,7 @@ def given(folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     return words
 
 
-def test_the_data_files_are_those_of_the_wheel(folder: Path, given: dict[str, Any], project: Any):
+def test_the_data_files_are_those_of_the_wheel(folder, given, project):
     installed = {
         f"{place}/{file.rpartition('/')[2]}"
         for place, files in given["data_files"]
@@ -39,6 +39,6 @@ def test_the_data_files_are_those_of_the_wheel(folder: Path, given: dict[str, An
     assert installed == {f"share/{name}" for name in wanted}
 
 
-def test_the_modules_are_all_there(folder: Path, given: dict[str, Any]):
+def test_the_modules_are_all_there(folder, given):
     modules = (path.relative_to(folder) for path in (folder / folder.name).rglob("*.py"))
     assert set(given["packages"]) == {".".join(path.parent.parts) for path in modules}

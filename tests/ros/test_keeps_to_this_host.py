@@ -8,7 +8,6 @@ import sys
 import textwrap
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import pytest
 from programs import Program
@@ -189,9 +188,7 @@ def _without_discovery() -> dict[str, str]:
 @pytest.mark.skipif(
     not can_make_hosts(), reason="network namespaces need root, iproute2 and util-linux"
 )
-def test_another_host_that_names_this_one_receives_and_moves_nothing(
-    hosts: tuple[Host, Host], background: Callable[..., Program], tmp_path: Path
-) -> None:
+def test_another_host_that_names_this_one_receives_and_moves_nothing(hosts, background, tmp_path):
     here, there = hosts
     file = tmp_path / "both.launch.py"
     file.write_text(textwrap.dedent(LAUNCH_FILE).format(own=OWN_NODE))
@@ -218,7 +215,7 @@ def test_another_host_that_names_this_one_receives_and_moves_nothing(
 
 
 @pytest.mark.workaround("local_profile")
-def test_launched_processes_listen_on_loopback_only(launch) -> None:
+def test_launched_processes_listen_on_loopback_only(launch):
     launched = launch("camera:=front", ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
     launched.wait_until_ready()
     listeners = {one.pid: one for one in find_listeners(os.environ)}

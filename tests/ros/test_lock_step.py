@@ -17,7 +17,7 @@ LAST = 400
 
 
 @pytest.fixture(scope="module")
-def start(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[], Path]]:
+def start(tmp_path_factory) -> Iterator[Callable[[], Path]]:
     """Start a simulation in lock-step with /partner, as fast as possible; return its log."""
     from arm_description.resources import resolve_uri
     from arm_description.xacro.expansion import expand_xacro

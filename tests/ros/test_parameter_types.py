@@ -114,7 +114,7 @@ def described(node: Node) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("maker", MAKERS)
-def test_a_value_of_a_wrong_type_is_refused_and_changes_no_description(ros: None, maker: str):
+def test_a_value_of_a_wrong_type_is_refused_and_changes_no_description(ros, maker):
     node = MAKERS[maker]()
     before = described(node)
     values = {name: node.get_parameter(name).value for name in before}
@@ -137,7 +137,7 @@ def test_a_value_of_a_wrong_type_is_refused_and_changes_no_description(ros: None
 
 
 @pytest.mark.parametrize("maker", MAKERS)
-def test_each_has_a_type_and_a_description(ros: None, maker: str):
+def test_each_has_a_type_and_a_description(ros, maker):
     node = MAKERS[maker]()
     for name in described(node):
         descriptor = node.describe_parameter(name)
@@ -159,7 +159,7 @@ def test_no_node_is_left_out():
     assert found - {"ParameterNode", "ControllerNode"} <= set(MAKERS)
 
 
-def test_an_integer_is_no_frequency(ros: None):
+def test_an_integer_is_no_frequency(ros):
     node = RobotStatePublisher()
     node.set_parameters_atomically([Parameter("publish_frequency", value=20)])
     descriptor = node.describe_parameter("publish_frequency")
@@ -169,7 +169,7 @@ def test_an_integer_is_no_frequency(ros: None):
     node.destroy_node()
 
 
-def test_given_values_are_stored_in_the_type(ros: None):
+def test_given_values_are_stored_in_the_type(ros):
     publisher, simulation = JointStatePublisher(None, lambda: None), simulation_node()
     elbow = publisher.get_parameter("zeros.elbow")
     assert (elbow.type_, elbow.value) == (Parameter.Type.DOUBLE, 1.0)
@@ -179,7 +179,7 @@ def test_given_values_are_stored_in_the_type(ros: None):
     simulation.destroy_node()
 
 
-def test_the_type_of_a_controller_is_a_text(ros: None):
+def test_the_type_of_a_controller_is_a_text(ros):
     node = MAKERS["ControllerManagerNode"]()
     refused, taken = (
         node.set_parameters_atomically([Parameter("new_controller.type", value=value)])
@@ -195,7 +195,7 @@ def test_the_type_of_a_controller_is_a_text(ros: None):
     ("value", "stored"),
     [([7, 0, 1, 2], [7.0, 0.0, 1.0, 2.0]), ([], []), ("[0, 0.5, 1, 1]", [0.0, 0.5, 1.0, 1.0])],
 )
-def test_a_pose_keeps_its_type_in_any_notation(ros: None, value: object, stored: list[float]):
+def test_a_pose_keeps_its_type_in_any_notation(ros, value, stored):
     node = ArmController()
     before = described(node)
     assert node.get_parameter("desired_param").value == []

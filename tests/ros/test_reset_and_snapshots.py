@@ -60,14 +60,14 @@ class User(Simulated):
 
 
 @pytest.fixture(scope="module")
-def simulation(launch_for_file: Any) -> Any:
+def simulation(launch_for_file):
     launched = launch_for_file("mycobot", "use_camera:=false")
     launched.wait_until_ready()
     return launched
 
 
 @pytest.fixture
-def user(simulation: Any, client: Any) -> User:
+def user(simulation, client) -> User:
     return User(client)
 
 

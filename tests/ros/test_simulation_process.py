@@ -24,7 +24,7 @@ print(code, threads, psutil.Process().children())
 
 
 @pytest.fixture(scope="module")
-def parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def parameters(tmp_path_factory) -> Path:
     """A file that makes the simulation of the arm with its front camera."""
     from arm_description.resources import resolve_uri
     from arm_description.xacro.expansion import expand_xacro

@@ -64,14 +64,14 @@ def decoded(file: Path) -> dict[str, dict[str, float]]:
         }
 
 
-def test_two_definitions_of_a_type_are_both_kept(tmp_path: Path):
+def test_two_definitions_of_a_type_are_both_kept(tmp_path):
     old = write(tmp_path / "old.mcap", ("/left", *ONE))
     new = write(tmp_path / "new.mcap", ("/right", *TWO))
     out = convert(tmp_path, old, new)
     assert decoded(out) == {"/left": {"force": 2.5}, "/right": {"force": 2.5, "torque": 0.25}}
 
 
-def test_two_definitions_cannot_become_one_topic(tmp_path: Path, capsys):
+def test_two_definitions_cannot_become_one_topic(tmp_path, capsys):
     bags = [write(tmp_path / f"{i}.mcap", ("/x", *one)) for i, one in enumerate((ONE, TWO))]
     convert(tmp_path, *bags, code=1)
     assert f"/x: the bags define {GRIP} differently" in capsys.readouterr().err
@@ -79,7 +79,7 @@ def test_two_definitions_cannot_become_one_topic(tmp_path: Path, capsys):
 
 
 @pytest.mark.parametrize("verb", ["play", "convert"])
-def test_a_file_with_two_definitions_of_a_topic_is_only_shown(tmp_path: Path, capsys, verb: str):
+def test_a_file_with_two_definitions_of_a_topic_is_only_shown(tmp_path, capsys, verb):
     bag = write(tmp_path / "bag.mcap", ("/x", *ONE), ("/x", *TWO), ("/y", *TWO))
     assert main(["bag", "info", "--json", str(bag)]) == 0
     topics = json.loads(capsys.readouterr().out)["topics"]
@@ -101,9 +101,7 @@ def test_a_file_with_two_definitions_of_a_topic_is_only_shown(tmp_path: Path, ca
         ("", "cdr", ""),
     ],
 )
-def test_every_schema_is_converted_as_it_is(
-    tmp_path: Path, encoding: str, message_encoding: str, definition: str
-):
+def test_every_schema_is_converted_as_it_is(tmp_path, encoding, message_encoding, definition):
     bag = write(
         tmp_path / "bag.mcap",
         ("/x", definition, b"{}\xff"),
@@ -117,7 +115,7 @@ def test_every_schema_is_converted_as_it_is(
     assert (channel.message_encoding, message.data) == (message_encoding, b"{}\xff")
 
 
-def test_a_channel_without_a_schema_is_converted(tmp_path: Path):
+def test_a_channel_without_a_schema_is_converted(tmp_path):
     with (tmp_path / "bag.mcap").open("wb") as stream:
         writer = Writer(stream)
         writer.start()

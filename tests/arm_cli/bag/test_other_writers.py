@@ -228,12 +228,12 @@ def unfinished(options: Options) -> bool:
 
 
 @pytest.mark.parametrize("options", EVERY_MCAP, ids=str)
-def test_the_bags_are_what_an_independent_reader_reads(tmp_path: Path, options: McapOptions):
+def test_the_bags_are_what_an_independent_reader_reads(tmp_path, options):
     assert read_by_mcap(options.write(tmp_path / "bag")) == EXPECTED
 
 
 @pytest.mark.parametrize("options", [*EVERY_MCAP, *MCAP[-2:], *ROSBAGS], ids=str)
-def test_info(tmp_path: Path, capsys: pytest.CaptureFixture[str], options: Options):
+def test_info(tmp_path, capsys, options):
     bag = options.write(tmp_path / "bag")
     out, err = said(capsys, "bag", "info", "--json", bag)
     info = json.loads(out)
@@ -277,7 +277,7 @@ def stand_in(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Recorded]]:
 
 
 @in_all_bags
-def test_play(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: Options):
+def test_play(tmp_path, monkeypatch, options):
     bag = options.write(tmp_path / "bag")
     with stand_in(monkeypatch) as published:
         assert main(["bag", "play", str(bag)]) == 0
@@ -290,7 +290,7 @@ def test_play(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: Options)
 
 
 @in_all_bags
-def test_convert(tmp_path: Path, capsys: pytest.CaptureFixture[str], options: Options):
+def test_convert(tmp_path, capsys, options):
     bag, out = options.write(tmp_path / "bag"), tmp_path / "out"
     (tmp_path / "options.yaml").write_text(f"output_bags: [{{uri: {out}, all_topics: true}}]")
     text, _ = said(capsys, "bag", "convert", "-i", bag, "-o", tmp_path / "options.yaml")
@@ -307,7 +307,7 @@ def test_convert(tmp_path: Path, capsys: pytest.CaptureFixture[str], options: Op
     [*((one, False) for one in (*MCAP, *ROSBAGS)), *((one, True) for one in ROSBAGS)],
     ids=str,
 )
-def test_reindex(tmp_path: Path, capsys: pytest.CaptureFixture[str], options: Options, lost: bool):
+def test_reindex(tmp_path, capsys, options, lost):
     bag = options.write(tmp_path / "bag")
     metadata = bag / "metadata.yaml"
     before = yaml.safe_load(metadata.read_text()) if metadata.exists() else None
@@ -347,7 +347,7 @@ def test_reindex(tmp_path: Path, capsys: pytest.CaptureFixture[str], options: Op
 
 
 @in_all_bags
-def test_dataset(tmp_path: Path, capsys: pytest.CaptureFixture[str], options: Options):
+def test_dataset(tmp_path, capsys, options):
     bag, out = options.write(tmp_path / "bag"), tmp_path / "out"
     said(capsys, "dataset", "convert", bag, "-o", out, "--task", "wave", "--fps", 100)
     rows = pq.read_table(out / "data/chunk-000/file-000.parquet")
@@ -359,9 +359,7 @@ def test_dataset(tmp_path: Path, capsys: pytest.CaptureFixture[str], options: Op
 
 @pytest.mark.parametrize("verb", ["info", "play", "reindex", "convert", "dataset"])
 @pytest.mark.parametrize("kind", ["file", "message by lz4"])
-def test_a_compression_that_is_not_read_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], verb: str, kind: str
-):
+def test_a_compression_that_is_not_read_is_refused(tmp_path, capsys, verb, kind):
     bag = tmp_path / "bag"
     mode = CompressionMode.FILE if kind == "file" else CompressionMode.MESSAGE
     RosbagsOptions(9, mode).write(bag)

@@ -73,7 +73,7 @@ Convert = Callable[..., str]
 
 
 @pytest.fixture
-def convert(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Convert:
+def convert(tmp_path, capsys) -> Convert:
     """Return a function that converts bags and returns what is printed."""
 
     def run(*bags: Path, options: Sequence[str] = (), code: int = 0) -> str:
@@ -85,7 +85,7 @@ def convert(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Convert:
     return run
 
 
-def test_bags_become_the_episodes_of_a_dataset(tmp_path: Path, convert: Convert):
+def test_bags_become_the_episodes_of_a_dataset(tmp_path, convert):
     messages = states(range(0, 300, 10)) + images(range(0, 300, 50)) + commands([42, 141])
     bags = [write(tmp_path / name, messages) for name in ("one", "two")]
     said = convert(*bags)
@@ -106,14 +106,14 @@ def test_bags_become_the_episodes_of_a_dataset(tmp_path: Path, convert: Convert)
     assert main(["dataset", "check", str(tmp_path / "out")]) == 0
 
 
-def test_without_cameras_the_rows_are_the_states(tmp_path: Path, convert: Convert):
+def test_without_cameras_the_rows_are_the_states(tmp_path, convert):
     bag = write(tmp_path / "bag", states(range(0, 100, 10)) + commands([0]))
     said = convert(bag, options=["--state-fields", "position"])
     assert "10 rows at 100 Hz" in said
     assert "observation.state: 10 messages, one in each row" in said
 
 
-def test_a_message_sent_twice_counts_once_and_is_told(tmp_path: Path, convert: Convert):
+def test_a_message_sent_twice_counts_once_and_is_told(tmp_path, convert):
     bag = write(tmp_path / "bag", states([0, 10, 10, 20]) + commands([0]))
     said = convert(bag)
     assert "1 messages of /joint_states are left out: others have the same or a later stamp" in said
@@ -142,8 +142,6 @@ def test_a_message_sent_twice_counts_once_and_is_told(tmp_path: Path, convert: C
         (states([0]) + commands([0]), [], "has only one message, so it has no rate"),
     ],
 )
-def test_a_bag_that_is_no_demonstration_is_refused(
-    tmp_path: Path, convert: Convert, messages: list[Recorded], options: list[str], sentence: str
-):
+def test_a_bag_that_is_no_demonstration_is_refused(tmp_path, convert, messages, options, sentence):
     assert sentence in convert(write(tmp_path / "bag", messages), options=options, code=1)
     assert not (tmp_path / "out").exists()

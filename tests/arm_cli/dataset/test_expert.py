@@ -18,9 +18,7 @@ from arm_cli.main import main
         (". --expert pick --workers 1", ". exists; a dataset is written into a new folder"),
     ],
 )
-def test_what_does_not_fit_is_said(
-    words: str, sentence: str, capsys: pytest.CaptureFixture[str], monkeypatch, tmp_path
-):
+def test_what_does_not_fit_is_said(words, sentence, capsys, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     assert main(["dataset", "record", *words.split()]) == 1
     assert sentence in capsys.readouterr().err

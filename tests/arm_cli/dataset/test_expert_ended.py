@@ -4,7 +4,6 @@ import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing
-from pathlib import Path
 
 import psutil
 import pytest
@@ -17,7 +16,7 @@ END_TIMEOUT_S = 60.0
 
 
 @pytest.fixture
-def recording(tmp_path: Path) -> Iterator[Callable[[str], Program]]:
+def recording(tmp_path) -> Iterator[Callable[[str], Program]]:
     """Start a recording of a thousand episodes into a folder."""
     words = ["dataset", "record", "--expert", "pick", "--episodes", "1000", "--workers", "1"]
     with ExitStack() as ending:

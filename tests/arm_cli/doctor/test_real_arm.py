@@ -16,7 +16,7 @@ from arm_sim.bench.serial_device import EmulatedPort, SerialDevice
 
 
 @pytest.fixture(autouse=True)
-def few_rates(monkeypatch: pytest.MonkeyPatch) -> None:
+def few_rates(monkeypatch) -> None:
     """Each silent rate costs the whole time that a busy machine may need for a reply."""
     monkeypatch.setattr("arm_drivers.feetech.survey.BAUDS", (1_000_000, 115_200))
 
@@ -27,7 +27,7 @@ def findings(device: SerialDevice, folder: Path, timeout_s: float = 0.4) -> dict
     return {each.check: f"{each.severity}: {each.sentence}" for each in found}
 
 
-def test_servos_and_their_voltage_are_found(tmp_path: Path):
+def test_servos_and_their_voltage_are_found(tmp_path):
     servos = FeetechServos(range(1, 4))
     servos.servos[2].memory[62] = 39
     found = findings(servos, tmp_path)
@@ -37,28 +37,28 @@ def test_servos_and_their_voltage_are_found(tmp_path: Path):
     assert found["voltage"] == "error: servo 2 has 3.9 V; it needs 4 to 8 V"
 
 
-def test_servos_at_another_baud_rate_are_found(tmp_path: Path):
+def test_servos_at_another_baud_rate_are_found(tmp_path):
     found = findings(FeetechServos(range(1, 3), baud=115_200), tmp_path)
     assert found["device"].endswith("hardware:=feetech; start with hardware_args:='baud:=115200'")
 
 
-def test_a_mycobot_is_found(tmp_path: Path):
+def test_a_mycobot_is_found(tmp_path):
     found = findings(EmulatedMyCobot(), tmp_path)
     assert found["device"] == "ok: a myCobot answers at 115200 baud: hardware:=mycobot_280"
 
 
-def test_nobody_behind_the_port_is_told(tmp_path: Path):
+def test_nobody_behind_the_port_is_told(tmp_path):
     found = findings(FeetechServos([]), tmp_path, 0.01)
     assert "neither Feetech servos nor a myCobot answer" in found["device"]
 
 
-def test_a_missing_port_is_told(tmp_path: Path):
+def test_a_missing_port_is_told(tmp_path):
     (found,) = examine_port(str(tmp_path / "none"))
     assert f"no port {tmp_path / 'none'}; this machine has" in found.sentence
 
 
 @pytest.fixture
-def port(tmp_path: Path) -> Iterator[str]:
+def port(tmp_path) -> Iterator[str]:
     servos = FeetechServos(range(1, 5))
     servos.servos[2].store(9, 1000)
     servos.servos[2].store(11, 3000)
@@ -66,7 +66,7 @@ def port(tmp_path: Path) -> Iterator[str]:
         yield str(plugged.path)
 
 
-def test_limits_of_the_description_and_of_the_arm_are_compared(port: str):
+def test_limits_of_the_description_and_of_the_arm_are_compared(port):
     model = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
     parameters = {"port": port, "reply_timeout": "1.0"}
     lines = list(compare_limits(model, (), "", "feetech", parameters))

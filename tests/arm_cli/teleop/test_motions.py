@@ -30,12 +30,12 @@ HELD = [0, 0, 0, 0, 1]
         ("\x1b", ["\x1b"]),
     ],
 )
-def test_arrows_are_keys_and_other_escape_sequences_are_none(typed: str, keys: list[str]):
+def test_arrows_are_keys_and_other_escape_sequences_are_none(typed, keys):
     assert keys_of(typed) == keys
 
 
 @given(st.text("\x1b[O;15AD~q. ", max_size=12))
-def test_whatever_is_typed_is_read_to_its_end(typed: str):
+def test_whatever_is_typed_is_read_to_its_end(typed):
     assert len(keys_of(typed)) <= len(typed)
 
 
@@ -88,6 +88,6 @@ def test_triggers_and_sticks_at_rest_do_not_move():
         ([math.nan, *AXES[1:]], HELD, "not finite"),
     ],
 )
-def test_a_gamepad_that_cannot_be_read_is_said(axes, buttons, message: str):
+def test_a_gamepad_that_cannot_be_read_is_said(axes, buttons, message):
     with pytest.raises(ValueError, match=message):
         gamepad_motion(axes, buttons)

@@ -21,7 +21,7 @@ PI = np.pi
         (0.0, -PI, -PI),
     ],
 )
-def test_shortest_angular_distance(start: float, end: float, distance: float):
+def test_shortest_angular_distance(start, end, distance):
     assert shortest_angular_distance(np.array([start]), np.array([end])) == pytest.approx(
         [distance], abs=1e-9
     )

@@ -3,14 +3,14 @@
 from arm_control.controllers.goals import RequestQueue
 
 
-def test_takes_nothing_until_it_is_opened() -> None:
+def test_takes_nothing_until_it_is_opened():
     queue: RequestQueue[int] = RequestQueue()
     assert not queue.put(1)
     assert not queue
     assert not queue.is_open
 
 
-def test_keeps_the_order_and_forgets_what_was_taken() -> None:
+def test_keeps_the_order_and_forgets_what_was_taken():
     queue: RequestQueue[int] = RequestQueue()
     queue.open()
     assert queue.put(1)
@@ -20,7 +20,7 @@ def test_keeps_the_order_and_forgets_what_was_taken() -> None:
     assert queue.take() == []
 
 
-def test_returns_what_is_left_when_it_closes() -> None:
+def test_returns_what_is_left_when_it_closes():
     queue: RequestQueue[int] = RequestQueue()
     queue.open()
     queue.put(1)

@@ -1,8 +1,6 @@
 """The parameters of a controller are those that it was configured with."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import pytest
 
@@ -36,9 +34,7 @@ TYPES = {
 
 
 @pytest.mark.parametrize("kind", TYPES)
-def test_they_are_known_from_configure_to_cleanup(
-    bench: Any, make: Callable[..., Any], kind: str
-) -> None:
+def test_they_are_known_from_configure_to_cleanup(bench, make, kind):
     class_ = controller_class(kind)
     given = class_.build_parameters(TYPES[kind])
     controller = make(class_, given)

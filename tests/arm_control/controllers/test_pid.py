@@ -75,7 +75,7 @@ def test_strategies_mix():
 
 
 @pytest.mark.parametrize("anti_windup", list(AntiWindup))
-def test_an_error_within_the_deadband_is_not_integrated(anti_windup: AntiWindup):
+def test_an_error_within_the_deadband_is_not_integrated(anti_windup):
     gains = PidGains(i=1.0, error_deadband=0.5, anti_windup=anti_windup)
 
     assert run(gains, [0.5, -0.4, 0.3, 0.0]) == [0.0] * 4

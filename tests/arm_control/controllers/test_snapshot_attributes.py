@@ -79,7 +79,7 @@ def undeclared(kind: type, left_out: set[str]) -> set[str]:
 
 
 @pytest.mark.parametrize("name", sorted(BY_ATTRIBUTES))
-def test_every_attribute_is_state_or_declared_transient(name: str):
+def test_every_attribute_is_state_or_declared_transient(name):
     kind = BY_ATTRIBUTES[name]
     shared = {*BY_MANAGER, "is_chained"} if issubclass(kind, ChainableController) else set()
     left_out = left_out_of(kind)

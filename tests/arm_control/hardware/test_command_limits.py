@@ -43,13 +43,13 @@ class Plant:
         return limited[0] if len(limited) == 1 else limited
 
 
-def test_a_position_stays_between_the_bounds() -> None:
+def test_a_position_stays_between_the_bounds():
     plant = Plant("position", JointLimits(-1.0, 1.0))
     plant.be(0.0, 0.0)
     assert [plant.command(x) for x in (-5.0, 0.5, 5.0)] == [-1.0, 0.5, 1.0]
 
 
-def test_a_position_moves_no_faster_than_the_joint_may() -> None:
+def test_a_position_moves_no_faster_than_the_joint_may():
     plant = Plant("position", LIMITS)
     plant.be(0.5, 0.0)
     assert plant.command(0.0) == pytest.approx(0.48)
@@ -57,7 +57,7 @@ def test_a_position_moves_no_faster_than_the_joint_may() -> None:
     assert plant.command(0.455) == pytest.approx(0.455)
 
 
-def test_changes_are_limited_from_the_last_command_not_the_lagging_state() -> None:
+def test_changes_are_limited_from_the_last_command_not_the_lagging_state():
     plant = Plant("position", LIMITS)
     plant.be(0.0, 0.0)
     for _ in range(10):
@@ -65,7 +65,7 @@ def test_changes_are_limited_from_the_last_command_not_the_lagging_state() -> No
     assert reached == pytest.approx(0.2)
 
 
-def test_a_joint_at_rest_gathers_speed_as_its_acceleration_allows() -> None:
+def test_a_joint_at_rest_gathers_speed_as_its_acceleration_allows():
     plant = Plant("position", JointLimits(-1.0, 1.0, 2.0, acceleration=10.0))
     plant.be(0.0, 0.0)
     assert plant.command(1.0) == pytest.approx(10.0 * PERIOD_S**2)
@@ -73,7 +73,7 @@ def test_a_joint_at_rest_gathers_speed_as_its_acceleration_allows() -> None:
     assert plant.command(1.0) == pytest.approx(10.0 * PERIOD_S**2 + 1.1 * PERIOD_S)
 
 
-def test_a_newly_claimed_joint_starts_at_its_position() -> None:
+def test_a_newly_claimed_joint_starts_at_its_position():
     plant = Plant("position", LIMITS)
     plant.be(0.0, 0.0)
     plant.command(0.0)
@@ -83,14 +83,14 @@ def test_a_newly_claimed_joint_starts_at_its_position() -> None:
     assert plant.command(0.9) == pytest.approx(0.9)
 
 
-def test_unclaimed_commands_are_not_limited() -> None:
+def test_unclaimed_commands_are_not_limited():
     plant = Plant("position", LIMITS, LIMITS)
     plant.be(0.0, 0.0, 0.0, 0.0)
     plant.limiter.claimed(("j0/position",))
     assert plant.command(9.0, 9.0) == [pytest.approx(0.02), 9.0]
 
 
-def test_after_a_cycle_without_a_command_the_last_one_is_still_used() -> None:
+def test_after_a_cycle_without_a_command_the_last_one_is_still_used():
     plant = Plant("position", LIMITS)
     plant.be(0.0, 0.0)
     for _ in range(5):
@@ -99,14 +99,14 @@ def test_after_a_cycle_without_a_command_the_last_one_is_still_used() -> None:
     assert plant.command(1.0) == pytest.approx(0.12)
 
 
-def test_without_a_state_the_first_command_is_only_bounded() -> None:
+def test_without_a_state_the_first_command_is_only_bounded():
     plant = Plant("position", LIMITS, states=("effort",))
     plant.be(math.nan)
     assert plant.command(7.0) == 1.0
     assert plant.command(0.0) == pytest.approx(0.98)
 
 
-def test_a_velocity_stays_below_the_limit_and_stops_at_the_bounds() -> None:
+def test_a_velocity_stays_below_the_limit_and_stops_at_the_bounds():
     plant = Plant("velocity", LIMITS)
     plant.be(0.0, 0.0)
     assert [plant.command(v) for v in (-9.0, 1.5, 9.0)] == [-2.0, 1.5, 2.0]
@@ -116,7 +116,7 @@ def test_a_velocity_stays_below_the_limit_and_stops_at_the_bounds() -> None:
     assert [plant.command(v) for v in (9.0, -9.0)] == [0.0, -2.0]
 
 
-def test_a_velocity_changes_as_the_acceleration_allows_unless_a_bound_is_near() -> None:
+def test_a_velocity_changes_as_the_acceleration_allows_unless_a_bound_is_near():
     plant = Plant("velocity", JointLimits(-1.0, 1.0, 2.0, acceleration=10.0))
     plant.be(0.0, 0.3)
     assert plant.command(2.0) == pytest.approx(0.4)
@@ -138,21 +138,19 @@ def test_a_velocity_changes_as_the_acceleration_allows_unless_a_bound_is_near() 
         (math.nan, math.nan, (-5.0, 5.0)),
     ],
 )
-def test_an_effort_never_pushes_outwards(
-    position: float, velocity: float, expected: tuple[float, float]
-) -> None:
+def test_an_effort_never_pushes_outwards(position, velocity, expected):
     plant = Plant("effort", LIMITS)
     plant.be(position, velocity)
     assert (plant.command(-99.0), plant.command(99.0)) == expected
 
 
 @pytest.mark.parametrize(("kind", "bound"), [("acceleration", 6.0), ("jerk", 7.0)])
-def test_accelerations_and_jerks_have_bounds(kind: str, bound: float) -> None:
+def test_accelerations_and_jerks_have_bounds(kind, bound):
     plant = Plant(kind, JointLimits(acceleration=6.0, jerk=7.0))
     assert [plant.command(v) for v in (-99.0, 1.0, 99.0)] == [-bound, 1.0, bound]
 
 
-def test_a_soft_bound_is_approached_ever_more_slowly_and_never_passed() -> None:
+def test_a_soft_bound_is_approached_ever_more_slowly_and_never_passed():
     plant = Plant("position", SOFT)
     plant.be(0.0, 0.0)
     path = [plant.command(1.0) for _ in range(200)]
@@ -163,7 +161,7 @@ def test_a_soft_bound_is_approached_ever_more_slowly_and_never_passed() -> None:
     assert path[-1] == pytest.approx(0.8, abs=1e-4)
 
 
-def test_beyond_a_soft_bound_a_joint_may_only_move_back() -> None:
+def test_beyond_a_soft_bound_a_joint_may_only_move_back():
     plant = Plant("position", SOFT)
     plant.be(0.9, 0.0)
     assert plant.command(1.0) == pytest.approx(0.9)
@@ -173,21 +171,21 @@ def test_beyond_a_soft_bound_a_joint_may_only_move_back() -> None:
     assert [velocity.command(v) for v in (1.0, -1.0)] == [0.0, -1.0]
 
 
-def test_a_soft_bound_without_a_gain_is_a_plain_bound() -> None:
+def test_a_soft_bound_without_a_gain_is_a_plain_bound():
     plant = Plant("position", JointLimits(-1.0, 1.0, 2.0, soft=SoftLimits(-0.8, 0.8, 0.0, 0.0)))
     plant.be(0.77, 0.0)
     assert plant.command(1.0) == pytest.approx(0.79)
     assert plant.command(1.0) == pytest.approx(0.8)
 
 
-def test_a_joint_too_fast_for_its_soft_limits_is_braked() -> None:
+def test_a_joint_too_fast_for_its_soft_limits_is_braked():
     plant = Plant("effort", SOFT)
     plant.be(0.75, 1.5)
     # At 0.05 rad from the bound 0.5 rad/s are allowed: 3 N m per rad/s brake the other 1.0.
     assert plant.command(5.0) == pytest.approx(-3.0)
 
 
-def test_each_joint_has_its_own_limits() -> None:
+def test_each_joint_has_its_own_limits():
     plant = Plant("position", JointLimits(-1.0, 1.0), JointLimits(), SOFT)
     plant.be(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     assert plant.command(3.0, 3.0, 3.0) == [1.0, 3.0, pytest.approx(0.02)]
@@ -222,9 +220,7 @@ def joint_limits(draw: Any) -> JointLimits:
     joint_limits(),
     st.lists(st.tuples(numbers, numbers, numbers), min_size=1, max_size=6),
 )
-def test_no_command_ever_leaves_the_limits(
-    kind: str, limits: JointLimits, story: list[tuple[float, float, float]]
-) -> None:
+def test_no_command_ever_leaves_the_limits(kind, limits, story):
     plant = Plant(kind, limits)
     low, high = {
         "position": (limits.lower, limits.upper),
@@ -252,13 +248,8 @@ def test_no_command_ever_leaves_the_limits(
     st.floats(-5.0, 5.0),
 )
 def test_a_higher_command_never_becomes_a_lower_one(
-    kind: str,
-    limits: JointLimits,
-    position: float,
-    velocity: float,
-    commands: list[float],
-    previous: float,
-) -> None:
+    kind, limits, position, velocity, commands, previous
+):
     limited = []
     for command in sorted(commands):
         plant = Plant(kind, limits)
@@ -269,9 +260,7 @@ def test_a_higher_command_never_becomes_a_lower_one(
 
 
 @given(joint_limits(), st.floats(-1.0, 1.0), st.lists(st.floats(-50.0, 50.0), max_size=30))
-def test_within_the_bounds_no_step_is_larger_than_the_speed_limit(
-    limits: JointLimits, share: float, commands: list[float]
-) -> None:
+def test_within_the_bounds_no_step_is_larger_than_the_speed_limit(limits, share, commands):
     plant = Plant("position", limits)
     start = (
         share
@@ -286,14 +275,14 @@ def test_within_the_bounds_no_step_is_larger_than_the_speed_limit(
         last = now
 
 
-def test_a_command_within_the_limits_is_not_touched() -> None:
+def test_a_command_within_the_limits_is_not_touched():
     plant = Plant("position", *[LIMITS] * 4)
     plant.be(*[0.1, 0.0] * 4)
     commands = [0.1, 0.10001, 0.09, 0.1199]
     assert plant.command(*commands) == commands
 
 
-def test_a_manager_keeps_its_controllers_commands_within_the_limits(bench: Any) -> None:
+def test_a_manager_keeps_its_controllers_commands_within_the_limits(bench):
     names = ("j0", "j1", "j2", "j3")
     bench.hardware = fake_hardware(names)
     bench.manager = ControllerManager([bench.hardware], 100, limits=dict.fromkeys(names, LIMITS))
@@ -308,7 +297,7 @@ def test_a_manager_keeps_its_controllers_commands_within_the_limits(bench: Any) 
     assert np.isnan(bench.hardware.commands).all()
 
 
-def test_without_limits_a_manager_leaves_commands_alone(bench: Any) -> None:
+def test_without_limits_a_manager_leaves_commands_alone(bench):
     probe = bench.configure("a", commands=("j0/position",))
     bench.manager.switch_controller(SwitchRequest(("a",)))
     probe.commands.write(99.0)

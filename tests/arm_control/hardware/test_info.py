@@ -36,24 +36,24 @@ JOINT = """
 """
 
 
-def test_a_robot_in_a_namespace_has_its_hardware() -> None:
+def test_a_robot_in_a_namespace_has_its_hardware():
     text = robot(block(JOINT)).replace("<robot", "<robot xmlns='http://www.ros.org'")
     (info,) = parse_hardware_info(text)
     assert [joint.name for joint in info.joints] == ["j0"]
 
 
-def test_a_description_without_a_block_has_no_hardware() -> None:
+def test_a_description_without_a_block_has_no_hardware():
     assert parse_hardware_info(robot()) == ()
 
 
-def test_the_components_own_data() -> None:
+def test_the_components_own_data():
     info = parse_one("")
     assert (info.name, info.type, info.plugin) == ("H", "system", "p/P")
     assert info.parameters == {"port": "/dev/x"}
     assert info.line == 1
 
 
-def test_a_joint_with_its_interfaces() -> None:
+def test_a_joint_with_its_interfaces():
     (joint,) = parse_one(JOINT).joints
     (command,) = joint.command_interfaces
     position, velocity = joint.state_interfaces
@@ -63,7 +63,7 @@ def test_a_joint_with_its_interfaces() -> None:
     assert command.parameters == {"min": "-1.5", "max": "2"}
 
 
-def test_an_interface_is_a_double_by_default() -> None:
+def test_an_interface_is_a_double_by_default():
     info = parse_one(
         JOINT + "<gpio name='io'><command_interface name='on' data_type='bool'/>"
         "<state_interface name='on' data_type='bool'/></gpio>"
@@ -72,7 +72,7 @@ def test_an_interface_is_a_double_by_default() -> None:
     assert info.data_types["j0/velocity"] == "double"
 
 
-def test_full_names_come_in_document_order_joints_first() -> None:
+def test_full_names_come_in_document_order_joints_first():
     info = parse_one(
         "<gpio name='io'><command_interface name='out'/><state_interface name='in'/></gpio>"
         "<sensor name='imu'><state_interface name='gyro.x'/></sensor>" + JOINT
@@ -81,7 +81,7 @@ def test_full_names_come_in_document_order_joints_first() -> None:
     assert info.command_interface_names == ("j0/position", "io/out")
 
 
-def test_several_components() -> None:
+def test_several_components():
     infos = parse_hardware_info(robot(block(name="A"), block(name="B", type_="sensor")))
     assert [info.name for info in infos] == ["A", "B"]
 
@@ -113,7 +113,7 @@ def test_several_components() -> None:
         ),
     ],
 )
-def test_what_is_wrong_is_named_with_its_line(blocks: str, says: str) -> None:
+def test_what_is_wrong_is_named_with_its_line(blocks, says):
     with pytest.raises(HardwareInfoError, match=says):
         parse_hardware_info(robot(blocks))
 
@@ -129,9 +129,7 @@ def test_what_is_wrong_is_named_with_its_line(blocks: str, says: str) -> None:
         ("int8", "-3", -3.0),
     ],
 )
-def test_an_initial_value_is_of_its_interfaces_type(
-    data_type: str, text: str, value: float | None
-) -> None:
+def test_an_initial_value_is_of_its_interfaces_type(data_type, text, value):
     info = parse_one(
         f"<gpio name='io'><state_interface name='on' data_type='{data_type}'>"
         f"<param name='initial_value'>{text}</param></state_interface></gpio>"
@@ -139,7 +137,7 @@ def test_an_initial_value_is_of_its_interfaces_type(
     assert info.gpios[0].state_interfaces[0].initial_value == value
 
 
-def test_only_a_bool_is_true() -> None:
+def test_only_a_bool_is_true():
     with pytest.raises(HardwareInfoError, match=r"'initial_value' of .* is 'true'; it must be"):
         parse_one(
             "<gpio name='io'><state_interface name='on'>"
@@ -147,7 +145,7 @@ def test_only_a_bool_is_true() -> None:
         )
 
 
-def test_a_limit_that_is_not_a_number_is_ignored() -> None:
+def test_a_limit_that_is_not_a_number_is_ignored():
     limits = "<param name='min'>{-2*pi}</param><param name='max'>3.5</param>"
     text = (
         f"<joint name='a'><command_interface name='position'>{limits}</command_interface></joint>"
@@ -158,13 +156,13 @@ def test_a_limit_that_is_not_a_number_is_ignored() -> None:
     assert interface.unread_limits == ("min",)
 
 
-def test_the_line_is_that_of_the_element() -> None:
+def test_the_line_is_that_of_the_element():
     text = robot("\n\n", block("\n<joint name='a'/>\n<joint name='a'/>"))
     with pytest.raises(HardwareInfoError, match=r"^line 5:"):
         parse_hardware_info(text)
 
 
-def test_the_group_of_a_component() -> None:
+def test_the_group_of_a_component():
     (info,) = parse_hardware_info(
         "<robot><ros2_control name='H' type='system'><hardware><plugin>p/P</plugin>"
         "<group> arms </group></hardware></ros2_control></robot>"
@@ -175,7 +173,7 @@ def test_the_group_of_a_component() -> None:
 
 # xacro writes a boolean as Python does.
 @pytest.mark.parametrize("false", ["false", "False", " false "])
-def test_what_a_joint_mimics_comes_from_the_urdf(false: str) -> None:
+def test_what_a_joint_mimics_comes_from_the_urdf(false):
     joints = f"<joint name='a'/><joint name='b' mimic='True'/><joint name='c' mimic='{false}'/>"
     (info,) = parse_hardware_info(
         "<robot><joint name='b'><mimic joint='a' multiplier='0' offset='0.5'/></joint>"
@@ -184,7 +182,7 @@ def test_what_a_joint_mimics_comes_from_the_urdf(false: str) -> None:
     assert [joint.mimic for joint in info.joints] == [None, Mimic("a", 0.0, 0.5), None]
 
 
-def test_a_mimic_that_is_not_a_number_is_named_with_its_line() -> None:
+def test_a_mimic_that_is_not_a_number_is_named_with_its_line():
     with pytest.raises(
         HardwareInfoError, match="line 2: 'multiplier' of <mimic> in <joint name='b%d'> is 'x'; it"
     ):
@@ -207,14 +205,12 @@ def with_attributes(attributes: str) -> HardwareInfo:
         ("rw_rate='0' is_async='False'", 0, False),
     ],
 )
-def test_a_component_may_ask_for_a_rate_and_a_thread(
-    attributes: str, rate_hz: int, is_async: bool
-) -> None:
+def test_a_component_may_ask_for_a_rate_and_a_thread(attributes, rate_hz, is_async):
     info = with_attributes(attributes)
     assert (info.read_write_rate_hz, info.is_async) == (rate_hz, is_async)
 
 
 @pytest.mark.parametrize("text", ["-1", "2.5", "fast", ""])
-def test_a_rate_is_a_whole_number(text: str) -> None:
+def test_a_rate_is_a_whole_number(text):
     with pytest.raises(HardwareInfoError, match=rf"rw_rate of .*'H'> is '{text}'; it must be a wh"):
         with_attributes(f"rw_rate='{text}'")

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from math import isnan
-from random import Random
 from typing import Any
 
 import numpy as np
@@ -58,7 +57,7 @@ def joint(name: str, commands: str = "position", states: str = "position velocit
     )
 
 
-def test_states_begin_at_their_initial_values_or_at_zero() -> None:
+def test_states_begin_at_their_initial_values_or_at_zero():
     mock = Mock(
         "<joint name='j'><state_interface name='position'>"
         "<param name='initial_value'>3.45</param></state_interface>"
@@ -72,7 +71,7 @@ def test_states_begin_at_their_initial_values_or_at_zero() -> None:
     assert isnan(states["s/force"])
 
 
-def test_a_command_shows_at_the_next_read_and_stays() -> None:
+def test_a_command_shows_at_the_next_read_and_stays():
     mock = Mock(joint("a") + joint("b"))
     mock.command({"a/position": 1.0})
     assert mock.states()["a/position"] == 0.0
@@ -81,7 +80,7 @@ def test_a_command_shows_at_the_next_read_and_stays() -> None:
     assert mock.states()["b/position"] == 0.0
 
 
-def test_each_quantity_is_mirrored_separately() -> None:
+def test_each_quantity_is_mirrored_separately():
     mock = Mock(joint("a", "position velocity effort strange", "position velocity effort strange"))
     mock.command({"a/velocity": 2.0, "a/effort": 3.0, "a/strange": 4.0})
     assert mock.cycle(3) == {
@@ -92,13 +91,13 @@ def test_each_quantity_is_mirrored_separately() -> None:
     }
 
 
-def test_a_state_that_is_not_commanded_keeps_its_value() -> None:
+def test_a_state_that_is_not_commanded_keeps_its_value():
     mock = Mock(joint("a", "velocity", "position"))
     mock.command({"a/velocity": 2.0})
     assert mock.cycle(3) == {"a/position": 0.0}
 
 
-def test_disabled_commands_go_nowhere(caplog: pytest.LogCaptureFixture) -> None:
+def test_disabled_commands_go_nowhere(caplog):
     mock = Mock(joint("a"), disable_commands="True")
     mock.command({"a/position": 1.0})
     assert mock.cycle()["a/position"] == 0.0
@@ -107,14 +106,14 @@ def test_disabled_commands_go_nowhere(caplog: pytest.LogCaptureFixture) -> None:
     ]
 
 
-def test_the_offset_is_added_to_positions() -> None:
+def test_the_offset_is_added_to_positions():
     mock = Mock(joint("a"), position_state_following_offset="-0.5")
     assert mock.cycle()["a/position"] == 0.0
     mock.command({"a/position": 1.0})
     assert mock.cycle(2)["a/position"] == 0.5
 
 
-def test_the_offset_may_go_to_another_interface() -> None:
+def test_the_offset_may_go_to_another_interface():
     mock = Mock(
         joint("a", "position", "position actual"),
         position_state_following_offset="-0.5",
@@ -125,7 +124,7 @@ def test_the_offset_may_go_to_another_interface() -> None:
 
 
 @pytest.mark.parametrize("parameter", ["mock_sensor_commands", "fake_sensor_commands"])
-def test_sensors_can_be_commanded(parameter: str) -> None:
+def test_sensors_can_be_commanded(parameter):
     sensor = "<sensor name='s'><state_interface name='f.x'/><state_interface name='f.y'/></sensor>"
     assert Mock(joint("a") + sensor).hardware.command_interfaces == ("a/position",)
     mock = Mock(joint("a") + sensor, **{parameter: "true"})
@@ -134,7 +133,7 @@ def test_sensors_can_be_commanded(parameter: str) -> None:
     assert mock.cycle()["s/f.y"] == 7.0
 
 
-def test_gpios_mirror_their_commands_and_all_states_on_demand() -> None:
+def test_gpios_mirror_their_commands_and_all_states_on_demand():
     gpio = (
         "<gpio name='io'><command_interface name='out'/><state_interface name='out'/>"
         "<state_interface name='in'/></gpio>"
@@ -156,7 +155,7 @@ MIMIC = (
 )
 
 
-def test_a_mimic_joint_follows_its_leader() -> None:
+def test_a_mimic_joint_follows_its_leader():
     block = joint("c", "") + joint("b", "") + joint("a", "position velocity")
     mock = Mock(block, MIMIC)
     assert mock.states()["b/position"] == 0.5
@@ -166,7 +165,7 @@ def test_a_mimic_joint_follows_its_leader() -> None:
     assert (states["c/position"], states["c/velocity"]) == (-1.5, -6.0)
 
 
-def test_mimic_false_makes_a_joint_independent() -> None:
+def test_mimic_false_makes_a_joint_independent():
     mock = Mock(joint("a") + joint("b").replace("'b'", "'b' mimic='false'"), MIMIC)
     mock.command({"a/position": 1.0, "b/position": 2.0})
     assert mock.cycle()["b/position"] == 2.0
@@ -179,12 +178,12 @@ def test_mimic_false_makes_a_joint_independent() -> None:
         (joint("a") + joint("b"), "'b' mimics 'a', so it cannot be commanded"),
     ],
 )
-def test_a_mimic_joint_that_cannot_follow_is_refused(block: str, says: str) -> None:
+def test_a_mimic_joint_that_cannot_follow_is_refused(block, says):
     with pytest.raises(HardwareInfoError, match=says):
         Mock(block, MIMIC)
 
 
-def test_joints_that_mimic_each_other_are_refused() -> None:
+def test_joints_that_mimic_each_other_are_refused():
     circle = "<joint name='a'><mimic joint='b'/></joint><joint name='b'><mimic joint='a'/></joint>"
     with pytest.raises(HardwareInfoError, match="mimic each other in a circle: a, b"):
         Mock(joint("a", "") + joint("b", ""), circle)
@@ -200,41 +199,41 @@ def dynamic() -> Mock:
     return Mock(joint("a", f"{MOTION} effort", MOTION), calculate_dynamics="true")
 
 
-def test_a_position_gives_velocity_and_acceleration(dynamic: Mock) -> None:
+def test_a_position_gives_velocity_and_acceleration(dynamic):
     dynamic.hardware.perform_command_mode_switch(["a/position"], [])
     dynamic.command({"a/position": 1.0})
     assert list(dynamic.cycle().values()) == pytest.approx([1.0, 10.0, 100.0])
     assert list(dynamic.cycle().values()) == pytest.approx([1.0, 0.0, -100.0])
 
 
-def test_a_velocity_moves_the_position_from_the_next_cycle_on(dynamic: Mock) -> None:
+def test_a_velocity_moves_the_position_from_the_next_cycle_on(dynamic):
     dynamic.hardware.perform_command_mode_switch(["a/velocity"], [])
     dynamic.command({"a/velocity": 2.0})
     assert list(dynamic.cycle().values()) == pytest.approx([0.0, 2.0, 20.0])
     assert list(dynamic.cycle(5).values()) == pytest.approx([1.0, 2.0, 0.0])
 
 
-def test_an_acceleration_moves_velocity_and_position(dynamic: Mock) -> None:
+def test_an_acceleration_moves_velocity_and_position(dynamic):
     dynamic.hardware.perform_command_mode_switch(["a/acceleration"], [])
     dynamic.command({"a/acceleration": 1.0})
     assert list(dynamic.cycle().values()) == pytest.approx([0.0, 0.0, 1.0])
     assert list(dynamic.cycle(10).values()) == pytest.approx([0.45, 1.0, 1.0])
 
 
-def test_a_read_without_time_between_is_harmless(dynamic: Mock) -> None:
+def test_a_read_without_time_between_is_harmless(dynamic):
     dynamic.command({"a/position": 1.0})
     dynamic.hardware.read(0.0, 0.0)
     assert dynamic.states() == {"a/position": 1.0, "a/velocity": 0.0, "a/acceleration": 0.0}
 
 
 @pytest.mark.parametrize("start", [["a/position", "a/velocity"], ["a/effort"]])
-def test_with_dynamics_a_joint_has_one_mode(dynamic: Mock, start: list[str]) -> None:
+def test_with_dynamics_a_joint_has_one_mode(dynamic, start):
     with pytest.raises(HardwareInfoError, match="joint 'a' has to be commanded by one of"):
         dynamic.hardware.prepare_command_mode_switch(start, [])
 
 
 @pytest.mark.parametrize("start", [["a/position"], ["s/f.x"], []])
-def test_other_modes_are_agreed_to(dynamic: Mock, start: list[str]) -> None:
+def test_other_modes_are_agreed_to(dynamic, start):
     assert dynamic.hardware.prepare_command_mode_switch(start, [])
 
 
@@ -245,12 +244,12 @@ def test_other_modes_are_agreed_to(dynamic: Mock, start: list[str]) -> None:
         ("position_state_following_offset", "far", "'far'; it must be a finite number"),
     ],
 )
-def test_parameters_that_make_no_sense_are_refused(parameter: str, text: str, says: str) -> None:
+def test_parameters_that_make_no_sense_are_refused(parameter, text, says):
     with pytest.raises(HardwareInfoError, match=says):
         Mock(joint("a"), **{parameter: text})
 
 
-def test_all_of_it_follows_the_hardware_protocol() -> None:
+def test_all_of_it_follows_the_hardware_protocol():
     hardware: Any = Mock(joint("a")).hardware
     assert all(
         getattr(hardware, step)()
@@ -266,9 +265,7 @@ some_kinds = st.lists(st.sampled_from(KINDS), unique=True)
     declared=st.lists(st.tuples(some_kinds, some_kinds), min_size=1, max_size=5),
     order=st.randoms(use_true_random=False),
 )
-def test_each_command_shows_in_its_own_state_whatever_each_joint_declares(
-    declared: list[tuple[list[str], list[str]]], order: Random
-) -> None:
+def test_each_command_shows_in_its_own_state_whatever_each_joint_declares(declared, order):
     named = [(f"j{i}", " ".join(c), " ".join(s)) for i, (c, s) in enumerate(declared)]
     order.shuffle(named)
     mock = Mock("".join(joint(*each) for each in named))

@@ -63,7 +63,7 @@ def start() -> Iterator[Callable[..., ControlLoop]]:
 
 
 @pytest.mark.parametrize("factor", [0.0, 1.0])
-def test_it_ticks_on_its_own_thread(start: Any, ticks: Ticks, factor: float) -> None:
+def test_it_ticks_on_its_own_thread(start, ticks, factor):
     start(ticks, factor)
     ticks.wait_for(20)
     assert len(ticks.threads) == 1
@@ -72,9 +72,7 @@ def test_it_ticks_on_its_own_thread(start: Any, ticks: Ticks, factor: float) -> 
 
 @pytest.mark.parametrize("paused", [True, False])
 @pytest.mark.parametrize("factor", [0.0, 1.0])
-def test_a_call_runs_on_the_loop_thread(
-    start: Any, ticks: Ticks, factor: float, paused: Any
-) -> None:
+def test_a_call_runs_on_the_loop_thread(start, ticks, factor, paused):
     loop = start(ticks, factor, paused=paused)
     thread = loop.call(threading.get_ident).result(TIMEOUT_S)
     loop.step() if paused else None
@@ -82,7 +80,7 @@ def test_a_call_runs_on_the_loop_thread(
     assert ticks.threads == {thread}
 
 
-def test_a_call_does_not_wait_for_a_distant_deadline(ticks: Ticks) -> None:
+def test_a_call_does_not_wait_for_a_distant_deadline(ticks):
     loop = ControlLoop(ticks, Pacer(3600.0))
     loop.start()
     ticks.wait_for(1)
@@ -92,7 +90,7 @@ def test_a_call_does_not_wait_for_a_distant_deadline(ticks: Ticks) -> None:
     assert loop.join(TIMEOUT_S)
 
 
-def test_calls_run_in_the_order_they_came(start: Any, ticks: Ticks) -> None:
+def test_calls_run_in_the_order_they_came(start, ticks):
     loop = start(ticks)
     order: list[int] = []
     futures = [loop.call(lambda i=i: order.append(i)) for i in range(50)]
@@ -101,7 +99,7 @@ def test_calls_run_in_the_order_they_came(start: Any, ticks: Ticks) -> None:
     assert order == list(range(50))
 
 
-def test_a_call_that_comes_before_the_start_waits_for_it(ticks: Ticks) -> None:
+def test_a_call_that_comes_before_the_start_waits_for_it(ticks):
     loop = ControlLoop(ticks, Pacer(0.002))
     future = loop.call(lambda: "early")
     loop.start(paused=True)
@@ -110,7 +108,7 @@ def test_a_call_that_comes_before_the_start_waits_for_it(ticks: Ticks) -> None:
     assert loop.join(TIMEOUT_S)
 
 
-def test_what_a_call_raises_is_the_callers(start: Any, ticks: Ticks) -> None:
+def test_what_a_call_raises_is_the_callers(start, ticks):
     loop = start(ticks)
 
     def broken() -> None:
@@ -121,14 +119,14 @@ def test_what_a_call_raises_is_the_callers(start: Any, ticks: Ticks) -> None:
     ticks.wait_for(ticks.count + 3)
 
 
-def test_a_call_that_wants_to_end_the_process_ends_nothing(start: Any, ticks: Ticks) -> None:
+def test_a_call_that_wants_to_end_the_process_ends_nothing(start, ticks):
     loop = start(ticks)
     with pytest.raises(ArmControlError, match="raised SystemExit: 3"):
         loop.call(lambda: sys.exit(3)).result(TIMEOUT_S)
     ticks.wait_for(ticks.count + 3)
 
 
-def test_a_cancelled_call_is_skipped(start: Any, ticks: Ticks) -> None:
+def test_a_cancelled_call_is_skipped(start, ticks):
     loop = start(ticks, paused=True)
     release = threading.Event()
     loop.call(lambda: release.wait(TIMEOUT_S))
@@ -142,7 +140,7 @@ def test_a_cancelled_call_is_skipped(start: Any, ticks: Ticks) -> None:
         future.result(0)
 
 
-def test_callers_that_keep_coming_do_not_hold_up_the_ticks(start: Any, ticks: Ticks) -> None:
+def test_callers_that_keep_coming_do_not_hold_up_the_ticks(start, ticks):
     loop = start(ticks, 0.0)
 
     def again() -> None:
@@ -157,7 +155,7 @@ def test_callers_that_keep_coming_do_not_hold_up_the_ticks(start: Any, ticks: Ti
 # Pause and steps
 
 
-def test_time_stands_still_while_paused(start: Any, ticks: Ticks) -> None:
+def test_time_stands_still_while_paused(start, ticks):
     loop = start(ticks, 0.0)
     ticks.wait_for(5)
     loop.pause().result(TIMEOUT_S)
@@ -168,27 +166,27 @@ def test_time_stands_still_while_paused(start: Any, ticks: Ticks) -> None:
     assert ticks.count == count
 
 
-def test_it_can_start_paused(start: Any, ticks: Ticks) -> None:
+def test_it_can_start_paused(start, ticks):
     loop = start(ticks, 0.0, paused=True)
     loop.call(lambda: None).result(TIMEOUT_S)
     assert ticks.count == 0
 
 
-def test_resume_lets_time_go_on(start: Any, ticks: Ticks) -> None:
+def test_resume_lets_time_go_on(start, ticks):
     loop = start(ticks, paused=True)
     loop.resume().result(TIMEOUT_S)
     ticks.wait_for(3)
     assert not loop.paused
 
 
-def test_steps_run_while_paused(start: Any, ticks: Ticks) -> None:
+def test_steps_run_while_paused(start, ticks):
     loop = start(ticks, paused=True)
     assert loop.step(7).result(TIMEOUT_S) == 7
     assert ticks.count == 7
     assert loop.paused
 
 
-def test_steps_do_not_wait_for_the_clock(ticks: Ticks) -> None:
+def test_steps_do_not_wait_for_the_clock(ticks):
     loop = ControlLoop(ticks, Pacer(3600.0))
     loop.start(paused=True)
     assert loop.step(5).result(TIMEOUT_S) == 5
@@ -196,7 +194,7 @@ def test_steps_do_not_wait_for_the_clock(ticks: Ticks) -> None:
     assert loop.join(TIMEOUT_S)
 
 
-def test_calls_are_served_between_steps(start: Any, ticks: Ticks) -> None:
+def test_calls_are_served_between_steps(start, ticks):
     loop = start(ticks, paused=True)
     steps = loop.step(10_000_000)
     seen = loop.call(lambda: ticks.count).result(TIMEOUT_S)
@@ -205,7 +203,7 @@ def test_calls_are_served_between_steps(start: Any, ticks: Ticks) -> None:
     assert 0 <= steps.result(TIMEOUT_S) < 10_000_000
 
 
-def test_a_pause_ends_steps(start: Any, ticks: Ticks) -> None:
+def test_a_pause_ends_steps(start, ticks):
     loop = start(ticks, paused=True)
     steps = loop.step(10_000_000)
     ticks.wait_for(1)
@@ -216,7 +214,7 @@ def test_a_pause_ends_steps(start: Any, ticks: Ticks) -> None:
     assert not loop.stepping
 
 
-def test_cancelling_steps_drops_those_not_yet_done(start: Any, ticks: Ticks) -> None:
+def test_cancelling_steps_drops_those_not_yet_done(start, ticks):
     loop = start(ticks, paused=True)
     steps = loop.step(10_000_000)
     ticks.wait_for(1)
@@ -230,9 +228,7 @@ def test_cancelling_steps_drops_those_not_yet_done(start: Any, ticks: Ticks) -> 
 
 
 @pytest.mark.parametrize("end", [ControlLoop.pause, ControlLoop.resume, ControlLoop.stop])
-def test_steps_cancelled_before_they_begin_are_not_run(
-    start: Any, ticks: Ticks, caplog: pytest.LogCaptureFixture, end: Callable[[ControlLoop], object]
-) -> None:
+def test_steps_cancelled_before_they_begin_are_not_run(start, ticks, caplog, end):
     loop = start(ticks, paused=True)
     release = threading.Event()
     loop.call(lambda: release.wait(TIMEOUT_S))
@@ -247,20 +243,20 @@ def test_steps_cancelled_before_they_begin_are_not_run(
     assert not caplog.records
 
 
-def test_step_requests_follow_one_another(start: Any, ticks: Ticks) -> None:
+def test_step_requests_follow_one_another(start, ticks):
     loop = start(ticks, paused=True)
     first, second = loop.step(3), loop.step(4)
     assert (first.result(TIMEOUT_S), second.result(TIMEOUT_S)) == (3, 4)
     assert ticks.count == 7
 
 
-def test_steps_need_a_pause(start: Any, ticks: Ticks) -> None:
+def test_steps_need_a_pause(start, ticks):
     loop = start(ticks)
     with pytest.raises(ValueError, match="pause it first"):
         loop.step(1).result(TIMEOUT_S)
 
 
-def test_the_number_of_steps_must_be_positive(start: Any, ticks: Ticks) -> None:
+def test_the_number_of_steps_must_be_positive(start, ticks):
     loop = start(ticks, paused=True)
     with pytest.raises(ValueError, match="must be positive, not 0"):
         loop.step(0).result(TIMEOUT_S)
@@ -269,7 +265,7 @@ def test_the_number_of_steps_must_be_positive(start: Any, ticks: Ticks) -> None:
 # The end
 
 
-def test_stop_ends_the_thread(start: Any, ticks: Ticks) -> None:
+def test_stop_ends_the_thread(start, ticks):
     loop = start(ticks)
     assert loop.running
     loop.stop()
@@ -277,13 +273,13 @@ def test_stop_ends_the_thread(start: Any, ticks: Ticks) -> None:
     assert not loop.running
 
 
-def test_stop_ends_a_paused_loop(start: Any, ticks: Ticks) -> None:
+def test_stop_ends_a_paused_loop(start, ticks):
     loop = start(ticks, paused=True)
     loop.stop()
     assert loop.join(TIMEOUT_S)
 
 
-def test_a_call_after_the_end_is_refused(start: Any, ticks: Ticks) -> None:
+def test_a_call_after_the_end_is_refused(start, ticks):
     loop = start(ticks)
     loop.stop()
     loop.join(TIMEOUT_S)
@@ -293,7 +289,7 @@ def test_a_call_after_the_end_is_refused(start: Any, ticks: Ticks) -> None:
         loop.step().result(0)
 
 
-def test_a_call_that_waits_when_the_loop_ends_is_refused(start: Any, ticks: Ticks) -> None:
+def test_a_call_that_waits_when_the_loop_ends_is_refused(start, ticks):
     loop = start(ticks, paused=True)
     release = threading.Event()
     loop.call(lambda: release.wait(TIMEOUT_S))
@@ -304,7 +300,7 @@ def test_a_call_that_waits_when_the_loop_ends_is_refused(start: Any, ticks: Tick
         left_over.result(TIMEOUT_S)
 
 
-def test_steps_not_run_at_the_end_are_reported(start: Any, ticks: Ticks) -> None:
+def test_steps_not_run_at_the_end_are_reported(start, ticks):
     loop = start(ticks, paused=True)
     steps = loop.step(10_000_000)
     loop.stop()
@@ -312,9 +308,7 @@ def test_steps_not_run_at_the_end_are_reported(start: Any, ticks: Ticks) -> None
 
 
 @pytest.mark.parametrize("kind", [RuntimeError, SystemExit])
-def test_a_tick_that_raises_ends_the_loop_with_its_reason(
-    start: Any, caplog: pytest.LogCaptureFixture, kind: type[BaseException]
-) -> None:
+def test_a_tick_that_raises_ends_the_loop_with_its_reason(start, caplog, kind):
     failures: list[BaseException] = []
 
     def broken() -> None:
@@ -329,9 +323,7 @@ def test_a_tick_that_raises_ends_the_loop_with_its_reason(
         loop.call(lambda: None).result(0)
 
 
-def test_its_thread_is_raised_while_it_paces_and_lowered_while_it_does_not(
-    start: Any, ticks: Ticks
-) -> None:
+def test_its_thread_is_raised_while_it_paces_and_lowered_while_it_does_not(start, ticks):
     asked: list[tuple[int, int]] = []
 
     def schedule(policy: int, priority: int) -> None:
@@ -364,7 +356,7 @@ class Publisher:
 
 
 @pytest.mark.parametrize("factor", [0.0, 1.0])
-def test_everything_is_published_before_a_pause_returns(start: Any, factor: float) -> None:
+def test_everything_is_published_before_a_pause_returns(start, factor):
     tick = Publisher()
     loop = start(tick, factor, outbox=tick.outbox)
     for _ in range(50):
@@ -374,7 +366,7 @@ def test_everything_is_published_before_a_pause_returns(start: Any, factor: floa
         assert tick.sent == list(range(count))
 
 
-def test_steps_are_published_before_the_wait_for_them_returns(start: Any) -> None:
+def test_steps_are_published_before_the_wait_for_them_returns(start):
     tick = Publisher()
     loop = start(tick, paused=True, outbox=tick.outbox)
     for count in (1, 2, MOST_TICKS, 2 * MOST_TICKS + 1):
@@ -383,7 +375,7 @@ def test_steps_are_published_before_the_wait_for_them_returns(start: Any) -> Non
         assert len(tick.sent) == before + count
 
 
-def test_ticks_that_follow_at_once_are_published_together(start: Any) -> None:
+def test_ticks_that_follow_at_once_are_published_together(start):
     tick = Publisher()
     loop = start(tick, factor=0.0, outbox=tick.outbox)
     assert tick.done.wait(TIMEOUT_S)

@@ -35,7 +35,7 @@ def gate() -> Gate:
 
 
 @pytest.fixture
-def started(gate: Gate) -> Gate:
+def started(gate) -> Gate:
     """Both partners have said that they are there."""
     gate.hear("/a", 0.0)
     gate.hear("/b", 0.0)

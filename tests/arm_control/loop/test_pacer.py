@@ -17,11 +17,11 @@ def run_tick(pacer: Pacer, clock: ManualClock, work_s: float = 0.0) -> None:
     pacer.end()
 
 
-def test_the_first_tick_is_due_at_once() -> None:
+def test_the_first_tick_is_due_at_once():
     assert Pacer(0.01, clock=ManualClock(5.0)).remaining_s() == 0.0
 
 
-def test_the_next_tick_is_due_one_period_later() -> None:
+def test_the_next_tick_is_due_one_period_later():
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     pacer.begin()
@@ -31,14 +31,14 @@ def test_the_next_tick_is_due_one_period_later() -> None:
 
 
 @pytest.mark.parametrize(("factor", "wall_s"), [(1.0, 0.01), (2.0, 0.005), (0.25, 0.04)])
-def test_the_real_time_factor_scales_the_wall_period(factor: float, wall_s: float) -> None:
+def test_the_real_time_factor_scales_the_wall_period(factor, wall_s):
     clock = ManualClock()
     pacer = Pacer(0.01, real_time_factor=factor, clock=clock)
     pacer.begin()
     assert pacer.remaining_s() == pytest.approx(wall_s)
 
 
-def test_factor_zero_never_waits() -> None:
+def test_factor_zero_never_waits():
     clock = ManualClock()
     pacer = Pacer(0.01, real_time_factor=0.0, clock=clock)
     for _ in range(100):
@@ -51,7 +51,7 @@ def test_factor_zero_never_waits() -> None:
     work_s=st.lists(st.floats(0.0, 0.009), min_size=10, max_size=300),
     factor=st.sampled_from([0.5, 1.0, 3.0]),
 )
-def test_deadlines_do_not_drift(work_s: list[float], factor: float) -> None:
+def test_deadlines_do_not_drift(work_s, factor):
     clock = ManualClock()
     pacer = Pacer(0.03, real_time_factor=factor, clock=clock)
     for work in work_s:
@@ -60,7 +60,7 @@ def test_deadlines_do_not_drift(work_s: list[float], factor: float) -> None:
     assert clock.now_s() == pytest.approx(len(work_s) * 0.03 / factor, abs=1e-9)
 
 
-def test_a_short_stall_is_made_up_for() -> None:
+def test_a_short_stall_is_made_up_for():
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     run_tick(pacer, clock, work_s=0.035)
@@ -70,7 +70,7 @@ def test_a_short_stall_is_made_up_for() -> None:
     assert pacer.statistics.lost_s == 0.0
 
 
-def test_of_a_long_stall_only_the_cap_is_made_up_for() -> None:
+def test_of_a_long_stall_only_the_cap_is_made_up_for():
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     run_tick(pacer, clock, work_s=1.01)
@@ -83,7 +83,7 @@ def test_of_a_long_stall_only_the_cap_is_made_up_for() -> None:
 
 
 @given(stalls_s=st.lists(st.floats(0.0, 0.3), max_size=50), factor=st.sampled_from([0.5, 1.0, 4.0]))
-def test_ticks_never_run_ahead_of_the_clock(stalls_s: list[float], factor: float) -> None:
+def test_ticks_never_run_ahead_of_the_clock(stalls_s, factor):
     clock = ManualClock()
     pacer = Pacer(0.01, real_time_factor=factor, clock=clock)
     for ticks, stall_s in enumerate(stalls_s):
@@ -91,7 +91,7 @@ def test_ticks_never_run_ahead_of_the_clock(stalls_s: list[float], factor: float
         assert ticks * 0.01 <= clock.now_s() * factor + 1e-9
 
 
-def test_lag_is_how_late_a_tick_starts() -> None:
+def test_lag_is_how_late_a_tick_starts():
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     run_tick(pacer, clock, work_s=0.025)
@@ -103,7 +103,7 @@ def test_lag_is_how_late_a_tick_starts() -> None:
     assert pacer.statistics.max_lag_s == pytest.approx(0.015)
 
 
-def test_ticks_that_outlast_their_period_are_overruns() -> None:
+def test_ticks_that_outlast_their_period_are_overruns():
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     for work_s in (0.002, 0.012, 0.002, 0.002):
@@ -111,7 +111,7 @@ def test_ticks_that_outlast_their_period_are_overruns() -> None:
     assert (pacer.statistics.ticks, pacer.statistics.overruns) == (4, 1)
 
 
-def test_the_achieved_factor_covers_the_last_second() -> None:
+def test_the_achieved_factor_covers_the_last_second():
     clock = ManualClock()
     pacer = Pacer(0.01, real_time_factor=0.0, clock=clock)
     assert pacer.statistics.achieved_factor == 0.0
@@ -120,7 +120,7 @@ def test_the_achieved_factor_covers_the_last_second() -> None:
     assert pacer.statistics.achieved_factor == pytest.approx(5.0)
 
 
-def test_restart_forgets_a_pause() -> None:
+def test_restart_forgets_a_pause():
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     run_tick(pacer, clock)
@@ -131,7 +131,7 @@ def test_restart_forgets_a_pause() -> None:
     assert (pacer.statistics.lag_s, pacer.statistics.lost_s) == (0.0, 0.0)
 
 
-def test_the_factor_can_change_at_any_time() -> None:
+def test_the_factor_can_change_at_any_time():
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     run_tick(pacer, clock)
@@ -141,18 +141,18 @@ def test_the_factor_can_change_at_any_time() -> None:
 
 
 @pytest.mark.parametrize("factor", [-1.0, float("inf"), float("nan")])
-def test_nonsense_factors_are_refused(factor: float) -> None:
+def test_nonsense_factors_are_refused(factor):
     with pytest.raises(ValueError, match="real_time_factor must be 0"):
         Pacer(0.01, real_time_factor=factor)
 
 
 @pytest.mark.parametrize("period_s", [0.0, -0.01, float("nan")])
-def test_nonsense_periods_are_refused(period_s: float) -> None:
+def test_nonsense_periods_are_refused(period_s):
     with pytest.raises(ValueError, match="period must be positive"):
         Pacer(period_s)
 
 
-def test_falling_behind_is_logged_at_intervals(caplog: pytest.LogCaptureFixture) -> None:
+def test_falling_behind_is_logged_at_intervals(caplog):
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     while clock.now_s() < 0.9 * WARNING_INTERVAL_S:
@@ -164,9 +164,7 @@ def test_falling_behind_is_logged_at_intervals(caplog: pytest.LogCaptureFixture)
     assert caplog.text.count("cannot keep its pace") == 3
 
 
-def test_a_stall_soon_after_a_warning_is_reported_with_the_next(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
+def test_a_stall_soon_after_a_warning_is_reported_with_the_next(caplog):
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     run_tick(pacer, clock, 0.1)
@@ -182,9 +180,7 @@ def test_a_stall_soon_after_a_warning_is_reported_with_the_next(
     assert "real-time factor 0.89 instead of 1" in caplog.text
 
 
-def test_a_stall_without_effect_on_the_pace_is_reported_as_a_stall(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
+def test_a_stall_without_effect_on_the_pace_is_reported_as_a_stall(caplog):
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     clock.advance(CATCH_UP_S + 0.004)
@@ -196,7 +192,7 @@ def test_a_stall_without_effect_on_the_pace_is_reported_as_a_stall(
     )
 
 
-def test_warnings_can_be_switched_off(caplog: pytest.LogCaptureFixture) -> None:
+def test_warnings_can_be_switched_off(caplog):
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock, print_warnings=False)
     for _ in range(500):
@@ -204,7 +200,7 @@ def test_warnings_can_be_switched_off(caplog: pytest.LogCaptureFixture) -> None:
     assert caplog.text == ""
 
 
-def test_keeping_up_is_silent(caplog: pytest.LogCaptureFixture) -> None:
+def test_keeping_up_is_silent(caplog):
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     for _ in range(500):
@@ -213,7 +209,7 @@ def test_keeping_up_is_silent(caplog: pytest.LogCaptureFixture) -> None:
 
 
 @pytest.mark.parametrize(("factor", "rate_hz"), [(1.0, 100.0), (0.5, 50.0), (0.0, 500.0)])
-def test_ticks_are_recorded_in_wall_time(factor: float, rate_hz: float) -> None:
+def test_ticks_are_recorded_in_wall_time(factor, rate_hz):
     clock = ManualClock()
     pacer = Pacer(0.01, real_time_factor=factor, clock=clock)
     for _ in range(20):
@@ -225,7 +221,7 @@ def test_ticks_are_recorded_in_wall_time(factor: float, rate_hz: float) -> None:
     assert statistics.execution_time_us.mean == pytest.approx(2000.0)
 
 
-def test_a_pause_does_not_count_as_a_long_period() -> None:
+def test_a_pause_does_not_count_as_a_long_period():
     clock = ManualClock()
     pacer = Pacer(0.01, clock=clock)
     run_tick(pacer, clock)
@@ -239,7 +235,7 @@ def test_a_pause_does_not_count_as_a_long_period() -> None:
     assert statistics.periodicity_hz.minimum == pytest.approx(100.0)
 
 
-def test_it_permits_once_per_interval() -> None:
+def test_it_permits_once_per_interval():
     clock = ManualClock()
     throttle = Throttle(1.0, clock)
     permits = []

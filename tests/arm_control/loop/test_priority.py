@@ -49,19 +49,19 @@ RAISED = (os.SCHED_FIFO, 50)
 LOWERED = (os.SCHED_OTHER, 0)
 
 
-def test_a_loop_that_sleeps_most_of_the_time_is_raised_once() -> None:
+def test_a_loop_that_sleeps_most_of_the_time_is_raised_once():
     machine = Machine()
     machine.run(5.0, used=0.1)
     assert machine.asked == [RAISED]
 
 
-def test_nothing_is_raised_before_a_second_was_seen() -> None:
+def test_nothing_is_raised_before_a_second_was_seen():
     machine = Machine()
     machine.run(0.9, used=0.1)
     assert machine.asked == []
 
 
-def test_a_loop_that_needs_too_much_is_lowered_and_raised_again_when_it_needs_less() -> None:
+def test_a_loop_that_needs_too_much_is_lowered_and_raised_again_when_it_needs_less():
     machine = Machine()
     machine.run(2.0, used=0.1)
     machine.run(2.0, used=0.9)
@@ -70,26 +70,26 @@ def test_a_loop_that_needs_too_much_is_lowered_and_raised_again_when_it_needs_le
     assert machine.asked == [RAISED, LOWERED, RAISED]
 
 
-def test_as_fast_as_possible_is_never_raised() -> None:
+def test_as_fast_as_possible_is_never_raised():
     machine = Machine()
     machine.run(5.0, used=0.004, wall=0.004, planned=0.0)
     assert machine.asked == []
 
 
-def test_a_starved_loop_is_judged_by_what_its_ticks_need() -> None:
+def test_a_starved_loop_is_judged_by_what_its_ticks_need():
     """A loop that gets little of a busy machine needs no less with a higher priority."""
     machine = Machine()
     machine.run(5.0, used=0.8, wall=3.0)
     assert machine.asked == []
 
 
-def test_ticks_of_a_faster_clock_are_judged_by_wall_time() -> None:
+def test_ticks_of_a_faster_clock_are_judged_by_wall_time():
     machine = Machine()
     machine.run(5.0, used=0.08, wall=0.1)
     assert machine.asked == []
 
 
-def test_a_pause_ends_it() -> None:
+def test_a_pause_ends_it():
     machine = Machine()
     machine.run(2.0, used=0.1)
     machine.loop.lower()
@@ -99,7 +99,7 @@ def test_a_pause_ends_it() -> None:
     assert machine.asked == [RAISED, LOWERED]
 
 
-def test_priority_0_leaves_the_ordinary_scheduler() -> None:
+def test_priority_0_leaves_the_ordinary_scheduler():
     machine = Machine(0)
     machine.run(5.0, used=0.1)
     assert machine.asked == []
@@ -108,9 +108,7 @@ def test_priority_0_leaves_the_ordinary_scheduler() -> None:
 @pytest.mark.parametrize(
     ("warn_if_denied", "level"), [(True, logging.WARNING), (False, logging.DEBUG)]
 )
-def test_a_missing_right_is_logged_once(
-    warn_if_denied: bool, level: int, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_missing_right_is_logged_once(warn_if_denied, level, caplog):
     caplog.set_level(logging.DEBUG)
     machine = Machine(warn_if_denied=warn_if_denied, allowed=False)
     machine.run(5.0, used=0.1)
@@ -122,7 +120,7 @@ def test_a_missing_right_is_logged_once(
     )
 
 
-def test_threads_that_share_locks_with_the_loop_get_a_larger_share_while_it_is_raised() -> None:
+def test_threads_that_share_locks_with_the_loop_get_a_larger_share_while_it_is_raised():
     """A thread that holds a lock and waits for a processor would delay the loop."""
     machine = Machine()
     machine.run(2.0, used=0.1)
@@ -131,13 +129,13 @@ def test_threads_that_share_locks_with_the_loop_get_a_larger_share_while_it_is_r
     assert machine.reniced == [OTHERS_NICENESS, -OTHERS_NICENESS]
 
 
-def test_without_the_right_nobody_is_reniced() -> None:
+def test_without_the_right_nobody_is_reniced():
     machine = Machine(allowed=False)
     machine.run(5.0, used=0.1)
     assert machine.reniced == []
 
 
-def test_all_threads_but_the_calling_one_change_their_niceness() -> None:
+def test_all_threads_but_the_calling_one_change_their_niceness():
     program = """
 import os, threading
 from arm_control.loop.priority import renice_other_threads

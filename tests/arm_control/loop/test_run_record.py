@@ -19,18 +19,18 @@ def record_of(starts_s: list[float], duration_s: float = 0.001, size: int = 100)
     return record
 
 
-def test_nothing_is_known_before_the_first_run() -> None:
+def test_nothing_is_known_before_the_first_run():
     assert RunRecord(5).statistics() is None
 
 
-def test_a_single_run_has_a_duration_but_no_rate() -> None:
+def test_a_single_run_has_a_duration_but_no_rate():
     statistics = record_of([3.0]).statistics()
     assert statistics is not None
     assert statistics.periodicity_hz is None
     assert statistics.execution_time_us.mean == pytest.approx(1000.0)
 
 
-def test_regular_runs_have_their_rate_and_no_deviation() -> None:
+def test_regular_runs_have_their_rate_and_no_deviation():
     statistics = record_of([0.01 * i for i in range(50)]).statistics()
     assert statistics is not None
     assert statistics.periodicity_hz is not None
@@ -38,7 +38,7 @@ def test_regular_runs_have_their_rate_and_no_deviation() -> None:
     assert statistics.periodicity_hz.standard_deviation == pytest.approx(0.0, abs=1e-6)
 
 
-def test_a_late_run_that_is_made_up_for_does_not_change_the_mean_rate() -> None:
+def test_a_late_run_that_is_made_up_for_does_not_change_the_mean_rate():
     statistics = record_of([0.0, 0.01, 0.0299, 0.03, 0.04]).statistics()
     assert statistics is not None
     rate = statistics.periodicity_hz
@@ -48,7 +48,7 @@ def test_a_late_run_that_is_made_up_for_does_not_change_the_mean_rate() -> None:
     assert rate.maximum == pytest.approx(10_000.0)
 
 
-def test_old_runs_are_forgotten() -> None:
+def test_old_runs_are_forgotten():
     record = record_of([0.0, 1.0, 2.0], duration_s=0.5, size=10)
     for _ in range(11):
         record.add_period(0.1)
@@ -58,7 +58,7 @@ def test_old_runs_are_forgotten() -> None:
     assert statistics.execution_time_us.maximum == pytest.approx(10_000.0)
 
 
-def test_what_is_cleared_is_forgotten() -> None:
+def test_what_is_cleared_is_forgotten():
     record = record_of([0.0, 60.0])
     record.clear()
     assert record.statistics() is None
@@ -70,7 +70,7 @@ def test_what_is_cleared_is_forgotten() -> None:
     assert statistics.periodicity_hz.minimum == pytest.approx(100.0)
 
 
-def test_setting_the_time_back_is_not_a_period() -> None:
+def test_setting_the_time_back_is_not_a_period():
     statistics = record_of([5.0, 5.01, 0.0, 0.01]).statistics()
     assert statistics is not None
     assert statistics.periodicity_hz is not None
@@ -78,7 +78,7 @@ def test_setting_the_time_back_is_not_a_period() -> None:
 
 
 @given(st.lists(st.floats(1e-4, 10.0), min_size=1, max_size=60))
-def test_mean_and_bounds_are_those_of_the_periods(periods_s: list[float]) -> None:
+def test_mean_and_bounds_are_those_of_the_periods(periods_s):
     starts_s = np.concatenate(([0.0], np.cumsum(periods_s))).tolist()
     statistics = record_of(starts_s).statistics()
     assert statistics is not None

@@ -10,7 +10,7 @@ from arm_control.manager.controller_manager import ControlCycle
 from arm_control.testing import ManualClock
 
 
-def test_states_come_first_and_commands_leave_before_the_broadcasters(bench: Any) -> None:
+def test_states_come_first_and_commands_leave_before_the_broadcasters(bench):
     seen = bench.events
     hardware = bench.hardware
     read, write = hardware.read, hardware.write
@@ -31,7 +31,7 @@ def test_states_come_first_and_commands_leave_before_the_broadcasters(bench: Any
     assert seen == ["read", "mover update", "write", "watcher update"]
 
 
-def test_the_period_is_the_time_since_the_last_cycle(bench: Any) -> None:
+def test_the_period_is_the_time_since_the_last_cycle(bench):
     mover = bench.configure("mover", commands=("j0/position",))
     bench.manager.switch_controller(SwitchRequest(("mover",)))
     clock = ManualClock(100.0)
@@ -45,7 +45,7 @@ def test_the_period_is_the_time_since_the_last_cycle(bench: Any) -> None:
 
 
 @pytest.mark.parametrize("step_s", [0.0, -50.0])
-def test_where_time_does_not_advance_the_period_is_nominal(bench: Any, step_s: float) -> None:
+def test_where_time_does_not_advance_the_period_is_nominal(bench, step_s):
     mover = bench.configure("mover", commands=("j0/position",))
     bench.manager.switch_controller(SwitchRequest(("mover",)))
     clock = ManualClock(100.0)
@@ -57,7 +57,7 @@ def test_where_time_does_not_advance_the_period_is_nominal(bench: Any, step_s: f
 
 
 @pytest.mark.parametrize("step_s", [3600.0, -3600.0])
-def test_a_date_that_is_set_changes_no_period(bench: Any, step_s: float) -> None:
+def test_a_date_that_is_set_changes_no_period(bench, step_s):
     every, second = (
         bench.configure(name, commands=(f"{joint}/position",), rate_hz=rate_hz)
         for name, joint, rate_hz in (("every", "j0", 100), ("second", "j1", 50))
@@ -80,5 +80,5 @@ def test_a_date_that_is_set_changes_no_period(bench: Any, step_s: float) -> None
         assert rate.minimum == pytest.approx(rate.maximum)
 
 
-def test_the_system_clock_is_the_date() -> None:
+def test_the_system_clock_is_the_date():
     assert SystemClock().now_s() > 1.6e9

@@ -1,7 +1,5 @@
 """What happens when a controller fails."""
 
-from typing import Any
-
 import pytest
 
 from arm_control import ControllerManager, SwitchRequest
@@ -13,9 +11,7 @@ ALL = ("j0/position", "j1/position", "j2/position", "j3/position")
 
 @pytest.mark.parametrize("how", ["returns ERROR", "raises"])
 @pytest.mark.parametrize("commands", [ALL, ()])
-def test_a_controller_whose_update_fails_is_deactivated(
-    bench: Any, how: str, commands: tuple[str, ...], caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_controller_whose_update_fails_is_deactivated(bench, how, commands, caplog):
     probe = bench.configure("bad", commands=commands, states=("j0/position",))
     good = bench.configure("good", states=("j0/position",))
     bench.manager.switch_controller(SwitchRequest(("bad", "good")))
@@ -30,9 +26,7 @@ def test_a_controller_whose_update_fails_is_deactivated(
     assert "activate again with: arm control switch_controllers --activate bad" in caplog.text
 
 
-def test_the_suggested_command_names_a_manager_with_another_name(
-    bench: Any, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_the_suggested_command_names_a_manager_with_another_name(bench, caplog):
     bench.manager = ControllerManager([fake_hardware()], 100, name="/left/controller_manager")
     bench.configure("bad").fails_update = True
     bench.manager.switch_controller(SwitchRequest(("bad",)))
@@ -43,7 +37,7 @@ def test_the_suggested_command_names_a_manager_with_another_name(
     ) in caplog.text
 
 
-def test_a_failed_controller_gives_its_interfaces_back(bench: Any) -> None:
+def test_a_failed_controller_gives_its_interfaces_back(bench):
     bench.configure("bad", commands=ALL).fails_update = True
     bench.configure("next", commands=ALL)
     bench.manager.switch_controller(SwitchRequest(("bad",)))
@@ -52,7 +46,7 @@ def test_a_failed_controller_gives_its_interfaces_back(bench: Any) -> None:
     assert bench.manager.switch_controller(SwitchRequest(("next",))).ok
 
 
-def test_a_failed_controller_can_be_activated_again(bench: Any) -> None:
+def test_a_failed_controller_can_be_activated_again(bench):
     probe = bench.configure("bad", commands=ALL)
     probe.fails_update = True
     bench.manager.switch_controller(SwitchRequest(("bad",)))
@@ -63,9 +57,7 @@ def test_a_failed_controller_can_be_activated_again(bench: Any) -> None:
     assert bench.states() == {"bad": "active"}
 
 
-def test_a_controller_that_raises_leaves_its_traceback(
-    bench: Any, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_controller_that_raises_leaves_its_traceback(bench, caplog):
     bench.configure("bad", commands=ALL).raises.add("update")
     bench.manager.switch_controller(SwitchRequest(("bad",)))
     bench.tick()
@@ -73,7 +65,7 @@ def test_a_controller_that_raises_leaves_its_traceback(
     assert record.exc_info is not None
 
 
-def test_the_fallback_takes_over_with_its_interfaces(bench: Any) -> None:
+def test_the_fallback_takes_over_with_its_interfaces(bench):
     bench.configure("spare", commands=ALL)
     bench.configure("bad", commands=ALL, fallback_names=("spare",)).fails_update = True
     bench.manager.switch_controller(SwitchRequest(("bad",)))
@@ -81,7 +73,7 @@ def test_the_fallback_takes_over_with_its_interfaces(bench: Any) -> None:
     assert bench.states() == {"bad": "inactive", "spare": "active"}
 
 
-def test_controllers_that_claim_the_interfaces_of_a_fallback_are_deactivated(bench: Any) -> None:
+def test_controllers_that_claim_the_interfaces_of_a_fallback_are_deactivated(bench):
     bench.configure("holder", commands=("j3/position",))
     bench.configure("spare", commands=("j0/position", "j3/position"))
     bad = bench.configure("bad", commands=("j0/position",), fallback_names=("spare",))
@@ -91,9 +83,7 @@ def test_controllers_that_claim_the_interfaces_of_a_fallback_are_deactivated(ben
     assert bench.states() == {"bad": "inactive", "spare": "active", "holder": "inactive"}
 
 
-def test_a_fallback_that_is_gone_is_logged_and_the_failed_one_still_stops(
-    bench: Any, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_fallback_that_is_gone_is_logged_and_the_failed_one_still_stops(bench, caplog):
     bench.configure("spare", commands=ALL)
     bench.configure("bad", commands=ALL, fallback_names=("spare",)).fails_update = True
     bench.manager.switch_controller(SwitchRequest(("bad",)))
@@ -103,7 +93,7 @@ def test_a_fallback_that_is_gone_is_logged_and_the_failed_one_still_stops(
     assert "Could not activate controller with name 'spare'" in caplog.text
 
 
-def test_a_controller_that_cannot_stop_is_cleaned_up_and_loses_its_interfaces(bench: Any) -> None:
+def test_a_controller_that_cannot_stop_is_cleaned_up_and_loses_its_interfaces(bench):
     bench.configure("bad", commands=ALL).raises.add("deactivate")
     bench.configure("next", commands=ALL)
     bench.manager.switch_controller(SwitchRequest(("bad",)))
@@ -115,7 +105,7 @@ def test_a_controller_that_cannot_stop_is_cleaned_up_and_loses_its_interfaces(be
 
 
 @pytest.mark.parametrize("strictness", [Strictness.STRICT, Strictness.BEST_EFFORT])
-def test_a_controller_that_cannot_stop_is_not_restarted(bench: Any, strictness: Strictness) -> None:
+def test_a_controller_that_cannot_stop_is_not_restarted(bench, strictness):
     bench.configure("bad", commands=ALL).refuses.add("deactivate")
     bench.configure("good", states=("j0/position",))
     bench.manager.switch_controller(SwitchRequest(("bad",)))

@@ -27,46 +27,46 @@ ALL = ("j0/position", "j1/position", "j2/position", "j3/position")
 # Loading and the life cycle
 
 
-def test_a_loaded_controller_is_unconfigured(bench: Any) -> None:
+def test_a_loaded_controller_is_unconfigured(bench):
     bench.load("a")
     assert bench.states() == {"a": "unconfigured"}
 
 
-def test_the_newest_controller_is_listed_first(bench: Any) -> None:
+def test_the_newest_controller_is_listed_first(bench):
     bench.load("a")
     bench.load("b")
     assert list(bench.states()) == ["b", "a"]
 
 
-def test_a_name_is_loaded_only_once(bench: Any) -> None:
+def test_a_name_is_loaded_only_once(bench):
     bench.load("a")
     with pytest.raises(ControllerManagerError, match="'a' was already loaded"):
         bench.load("a")
 
 
-def test_a_controller_cannot_be_its_own_fallback(bench: Any) -> None:
+def test_a_controller_cannot_be_its_own_fallback(bench):
     with pytest.raises(ControllerManagerError, match="own fallback"):
         bench.load("a", fallback_names=("a",))
 
 
-def test_configure_makes_it_inactive(bench: Any) -> None:
+def test_configure_makes_it_inactive(bench):
     bench.configure("a")
     assert bench.states() == {"a": "inactive"}
 
 
-def test_configure_of_an_unknown_name_says_what_is_loaded(bench: Any) -> None:
+def test_configure_of_an_unknown_name_says_what_is_loaded(bench):
     bench.load("a")
     with pytest.raises(ControllerManagerError, match=r"no controller with this name.*loaded: a"):
         bench.manager.configure_controller("b", None)
 
 
-def test_an_inactive_controller_is_cleaned_up_before_it_is_configured_again(bench: Any) -> None:
+def test_an_inactive_controller_is_cleaned_up_before_it_is_configured_again(bench):
     probe = bench.configure("a")
     bench.manager.configure_controller("a", probe.parameters_type())
     assert bench.events == ["a configure", "a cleanup", "a configure"]
 
 
-def test_an_active_controller_is_not_configured(bench: Any) -> None:
+def test_an_active_controller_is_not_configured(bench):
     probe = bench.configure("a")
     bench.manager.switch_controller(SwitchRequest(("a",)))
     with pytest.raises(ControllerManagerError, match="can not be configured from 'active' state"):
@@ -74,7 +74,7 @@ def test_an_active_controller_is_not_configured(bench: Any) -> None:
 
 
 @pytest.mark.parametrize("way", ["refuses", "raises"])
-def test_a_failing_configure_leaves_it_unconfigured_with_its_reason(bench: Any, way: str) -> None:
+def test_a_failing_configure_leaves_it_unconfigured_with_its_reason(bench, way):
     probe = bench.load("a")
     getattr(probe, way).add("configure")
     with pytest.raises(ControllerManagerError, match=r"does not want to|broke in configure"):
@@ -83,33 +83,33 @@ def test_a_failing_configure_leaves_it_unconfigured_with_its_reason(bench: Any, 
 
 
 @pytest.mark.parametrize("kind", ["commands", "states"])
-def test_an_interface_requested_twice_fails_the_configuration(bench: Any, kind: str) -> None:
+def test_an_interface_requested_twice_fails_the_configuration(bench, kind):
     with pytest.raises(ControllerManagerError, match=r"interface j0/position more than once"):
         bench.configure("a", **{kind: ("j0/position", "j1/position", "j0/position")})
     assert bench.states() == {"a": "unconfigured"}
 
 
-def test_cleanup_takes_an_inactive_controller_back(bench: Any) -> None:
+def test_cleanup_takes_an_inactive_controller_back(bench):
     bench.configure("a", commands=ALL)
     bench.manager.cleanup_controller("a")
     (status,) = bench.manager.list_controllers()
     assert (status.state, status.required_command_interfaces) == (LifecycleState.UNCONFIGURED, ())
 
 
-def test_cleanup_of_an_unconfigured_controller_does_nothing(bench: Any) -> None:
+def test_cleanup_of_an_unconfigured_controller_does_nothing(bench):
     bench.load("a")
     bench.manager.cleanup_controller("a")
     assert bench.events == []
 
 
-def test_cleanup_of_an_unknown_name_says_what_is_loaded(bench: Any) -> None:
+def test_cleanup_of_an_unknown_name_says_what_is_loaded(bench):
     bench.load("a")
     with pytest.raises(ControllerManagerError, match=r"clean up controller with name 'x'.*: a"):
         bench.manager.cleanup_controller("x")
 
 
 @pytest.mark.parametrize("way", ["refuses", "raises"])
-def test_a_controller_that_cannot_be_cleaned_up_stays_inactive(bench: Any, way: str) -> None:
+def test_a_controller_that_cannot_be_cleaned_up_stays_inactive(bench, way):
     probe = bench.configure("a", commands=ALL)
     getattr(probe, way).add("cleanup")
     with pytest.raises(ControllerManagerError, match="controller 'a' was not cleaned up: "):
@@ -124,7 +124,7 @@ def test_a_controller_that_cannot_be_cleaned_up_stays_inactive(bench: Any, way: 
     assert bench.states() == {}
 
 
-def test_a_controller_can_be_configured_again_after_cleanup(bench: Any) -> None:
+def test_a_controller_can_be_configured_again_after_cleanup(bench):
     probe = bench.configure("a", commands=ALL[:1])
     bench.manager.cleanup_controller("a")
     bench.manager.configure_controller("a", type(probe).parameters_type(ALL[1:2]))
@@ -132,42 +132,42 @@ def test_a_controller_can_be_configured_again_after_cleanup(bench: Any) -> None:
     assert status.required_command_interfaces == ALL[1:2]
 
 
-def test_an_active_controller_is_not_cleaned_up(bench: Any) -> None:
+def test_an_active_controller_is_not_cleaned_up(bench):
     bench.configure("a")
     bench.manager.switch_controller(SwitchRequest(("a",)))
     with pytest.raises(ControllerManagerError, match="cleaned-up from 'active'"):
         bench.manager.cleanup_controller("a")
 
 
-def test_a_finalized_controller_is_not_cleaned_up(bench: Any) -> None:
+def test_a_finalized_controller_is_not_cleaned_up(bench):
     bench.configure("a")
     bench.manager.shutdown()
     with pytest.raises(ControllerManagerError, match="cleaned-up from 'finalized'"):
         bench.manager.cleanup_controller("a")
 
 
-def test_unload_cleans_up_shuts_down_and_forgets(bench: Any) -> None:
+def test_unload_cleans_up_shuts_down_and_forgets(bench):
     bench.configure("a")
     bench.manager.unload_controller("a")
     assert bench.events == ["a configure", "a cleanup", "a shutdown"]
     assert bench.states() == {}
 
 
-def test_an_active_controller_is_not_unloaded(bench: Any) -> None:
+def test_an_active_controller_is_not_unloaded(bench):
     bench.configure("a")
     bench.manager.switch_controller(SwitchRequest(("a",)))
     with pytest.raises(ControllerManagerError, match="still active"):
         bench.manager.unload_controller("a")
 
 
-def test_the_same_name_can_be_loaded_again_after_unload(bench: Any) -> None:
+def test_the_same_name_can_be_loaded_again_after_unload(bench):
     bench.configure("a")
     bench.manager.unload_controller("a")
     bench.load("a")
     assert bench.states() == {"a": "unconfigured"}
 
 
-def test_shutdown_finalizes_controllers_then_hardware(bench: Any) -> None:
+def test_shutdown_finalizes_controllers_then_hardware(bench):
     bench.configure("a", commands=ALL)
     bench.manager.switch_controller(SwitchRequest(("a",)))
     bench.events.clear()
@@ -181,7 +181,7 @@ def test_shutdown_finalizes_controllers_then_hardware(bench: Any) -> None:
 # What clients see
 
 
-def test_interfaces_are_required_when_configured_and_claimed_when_active(bench: Any) -> None:
+def test_interfaces_are_required_when_configured_and_claimed_when_active(bench):
     bench.configure("a", commands=ALL, states=("j0/velocity",))
     (inactive,) = bench.manager.list_controllers()
     bench.manager.switch_controller(SwitchRequest(("a",)))
@@ -191,7 +191,7 @@ def test_interfaces_are_required_when_configured_and_claimed_when_active(bench: 
     assert (inactive.claimed_interfaces, active.claimed_interfaces) == ((), ALL)
 
 
-def test_hardware_interfaces_are_sorted_and_show_claims(bench: Any) -> None:
+def test_hardware_interfaces_are_sorted_and_show_claims(bench):
     bench.configure("a", commands=("j1/position",))
     bench.manager.switch_controller(SwitchRequest(("a",)))
     commands, states = bench.manager.list_hardware_interfaces()
@@ -205,7 +205,7 @@ def test_hardware_interfaces_are_sorted_and_show_claims(bench: Any) -> None:
     assert not any(s.is_claimed for s in states)
 
 
-def test_components_are_listed_with_plugin_type_state_and_rate(bench: Any) -> None:
+def test_components_are_listed_with_plugin_type_state_and_rate(bench):
     (component,) = bench.manager.list_hardware_components()
     assert (component.name, component.type) == ("FakeSystem", "system")
     assert component.plugin == "mock_components/GenericSystem"
@@ -213,7 +213,7 @@ def test_components_are_listed_with_plugin_type_state_and_rate(bench: Any) -> No
     assert component.read_write_rate_hz == 100
 
 
-def test_every_transition_is_reported(bench: Any, observer: Any) -> None:
+def test_every_transition_is_reported(bench, observer):
     bench.configure("a")
     bench.manager.switch_controller(SwitchRequest(("a",)))
     bench.manager.switch_controller(SwitchRequest((), ("a",)))
@@ -228,14 +228,14 @@ def test_every_transition_is_reported(bench: Any, observer: Any) -> None:
     ]
 
 
-def test_a_transition_that_fails_is_reported_as_going_nowhere(bench: Any, observer: Any) -> None:
+def test_a_transition_that_fails_is_reported_as_going_nowhere(bench, observer):
     bench.configure("a").refuses.add("activate")
     bench.manager.switch_controller(SwitchRequest(("a",)))
     s = LifecycleState
     assert observer.transitions[-1] == ("a", "activate", s.INACTIVE, s.INACTIVE)
 
 
-def test_one_activity_per_change_of_controllers(bench: Any, observer: Any) -> None:
+def test_one_activity_per_change_of_controllers(bench, observer):
     bench.configure("a")
     before = observer.changes
     bench.manager.switch_controller(SwitchRequest(("a",)))
@@ -252,9 +252,7 @@ def test_one_activity_per_change_of_controllers(bench: Any, observer: Any) -> No
     ],
     ids=["unknown", "refuses", "inactive", "nothing"],
 )
-def test_a_switch_that_changes_nothing_reports_nothing(
-    bench: Any, observer: Any, request_: SwitchRequest
-) -> None:
+def test_a_switch_that_changes_nothing_reports_nothing(bench, observer, request_):
     bench.configure("a")
     bench.configure("broken").refuses.add("activate")
     before = observer.changes
@@ -262,7 +260,7 @@ def test_a_switch_that_changes_nothing_reports_nothing(
     assert observer.changes == before
 
 
-def test_a_restart_is_reported(bench: Any, observer: Any) -> None:
+def test_a_restart_is_reported(bench, observer):
     bench.configure("a")
     bench.manager.switch_controller(SwitchRequest(("a",)))
     before = observer.changes
@@ -270,7 +268,7 @@ def test_a_restart_is_reported(bench: Any, observer: Any) -> None:
     assert observer.changes == before + 1
 
 
-def test_hardware_that_stays_as_it_is_reports_nothing(bench: Any, observer: Any) -> None:
+def test_hardware_that_stays_as_it_is_reports_nothing(bench, observer):
     (component,) = bench.manager.list_hardware_components()
     bench.manager.set_hardware_component_state(component.name, component.state)
     with pytest.raises(ControllerManagerError):
@@ -291,7 +289,7 @@ class CountedName(str):
         return str.__eq__(self, other)
 
 
-def test_a_switch_does_not_compare_each_interface_with_each_other(bench: Any) -> None:
+def test_a_switch_does_not_compare_each_interface_with_each_other(bench):
     joints = [f"joint{i}" for i in range(300)]
     manager = ControllerManager([fake_hardware(joints)], 100)
     manager.bring_up()
@@ -304,7 +302,7 @@ def test_a_switch_does_not_compare_each_interface_with_each_other(bench: Any) ->
     assert CountedName.comparisons < 10 * len(states)
 
 
-def test_a_tick_without_changes_reports_nothing(bench: Any, observer: Any) -> None:
+def test_a_tick_without_changes_reports_nothing(bench, observer):
     bench.configure("a", commands=ALL)
     bench.manager.switch_controller(SwitchRequest(("a",)))
     before = observer.changes
@@ -336,7 +334,7 @@ class PositionReader(Controller[Any]):
         return ReturnType.OK
 
 
-def test_a_command_is_visible_in_the_very_next_publish(bench: Any, make: Any) -> None:
+def test_a_command_is_visible_in_the_very_next_publish(bench, make):
     reader = make(PositionReader, None)
     position = JointGroupPositionController(reader.context)
     position.name = "position"
@@ -349,7 +347,7 @@ def test_a_command_is_visible_in_the_very_next_publish(bench: Any, make: Any) ->
     assert reader.published == [0.0, 0.5]
 
 
-def test_commanding_controllers_run_in_update_and_others_in_publish(bench: Any) -> None:
+def test_commanding_controllers_run_in_update_and_others_in_publish(bench):
     bench.configure("commands", commands=ALL)
     bench.configure("watches", states=("j0/position",))
     bench.manager.switch_controller(SwitchRequest(("commands", "watches")))
@@ -360,27 +358,27 @@ def test_commanding_controllers_run_in_update_and_others_in_publish(bench: Any) 
     assert bench.events == ["commands update", "watches update"]
 
 
-def test_update_gets_time_and_period(bench: Any) -> None:
+def test_update_gets_time_and_period(bench):
     probe = bench.configure("a", commands=ALL)
     bench.manager.switch_controller(SwitchRequest(("a",)))
     bench.tick(2)
     assert probe.updates == [(0.0, 0.01), (0.01, 0.01)]
 
 
-def test_an_inactive_controller_is_not_updated(bench: Any) -> None:
+def test_an_inactive_controller_is_not_updated(bench):
     probe = bench.configure("a", commands=ALL)
     bench.tick()
     assert probe.updates == []
 
 
-def test_states_are_read_only_for_controllers(bench: Any) -> None:
+def test_states_are_read_only_for_controllers(bench):
     probe = bench.configure("a", states=("j0/position", "j1/position"))
     bench.manager.switch_controller(SwitchRequest(("a",)))
     with pytest.raises(ValueError, match="read-only"):
         probe.states.read()[0] = 1.0
 
 
-def test_the_log_is_silent_while_all_is_well(bench: Any, caplog: Any) -> None:
+def test_the_log_is_silent_while_all_is_well(bench, caplog):
     bench.configure("a", commands=ALL)
     bench.manager.switch_controller(SwitchRequest(("a",)))
     with caplog.at_level(logging.DEBUG):

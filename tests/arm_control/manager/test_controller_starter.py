@@ -1,7 +1,6 @@
 """Controllers start without ROS from what a parameter file says."""
 
 import logging
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -46,7 +45,7 @@ def test_the_type_may_stand_in_the_controller_s_own_entry():
     assert type(started.start("ctrl")).__name__ == "JointGroupPositionController"
 
 
-def test_a_file_of_its_own_overrides_the_common_one(tmp_path: Path):
+def test_a_file_of_its_own_overrides_the_common_one(tmp_path):
     own = tmp_path / "own.yaml"
     own.write_text("ctrl: {ros__parameters: {joints: [j2]}}")
     content = file({"ctrl": {"type": FORWARD, "params_file": str(own)}}, ctrl={"joints": ["j0"]})
@@ -77,7 +76,7 @@ def test_parameters_of_a_namespace_are_found():
         ({"ctrl": {"parameters": {}}}, "the file: 'ctrl' has no mapping ros__parameters"),
     ],
 )
-def test_what_is_wrong_gets_the_sentence_of_the_manager(content: dict[str, Any], message: str):
+def test_what_is_wrong_gets_the_sentence_of_the_manager(content, message):
     with pytest.raises(ArmControlError, match=message):
         starter(content).start("ctrl")
 
@@ -90,7 +89,7 @@ def test_an_interface_that_another_controller_has_is_refused():
         started.start("two")
 
 
-def test_unknown_parameters_are_warned_of(caplog: pytest.LogCaptureFixture):
+def test_unknown_parameters_are_warned_of(caplog):
     content = file({"ctrl": {"type": FORWARD}}, ctrl={"joints": ["j0"], "joynts": ["j1"]})
     with caplog.at_level(logging.WARNING):
         starter(content).start("ctrl")

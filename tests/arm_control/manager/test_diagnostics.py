@@ -89,13 +89,13 @@ class Ward:
 
 
 @pytest.fixture
-def ward(bench: Any) -> Ward:
+def ward(bench) -> Ward:
     """Return the bench under observation."""
     return Ward(bench)
 
 
 @pytest.fixture
-def running(ward: Ward) -> Iterator[Ward]:
+def running(ward) -> Iterator[Ward]:
     """Return the bench under observation, its loop's thread alive but waiting for its turn."""
     ready, go = threading.Event(), threading.Event()
 
@@ -119,7 +119,7 @@ class AilingSystem(GenericSystem):
         return HardwareHealth("it is too hot", {"temperature": "81 C"})
 
 
-def test_a_driver_tells_its_own_faults(bench: Any) -> None:
+def test_a_driver_tells_its_own_faults(bench):
     ward = Ward(bench)
     component = next(iter(bench.manager.resources.components.values()))
     assert component.name not in ward.components.message
@@ -129,20 +129,20 @@ def test_a_driver_tells_its_own_faults(bench: Any) -> None:
     assert report.values[f"{component.name}.temperature"] == "81 C"
 
 
-def test_a_manager_without_hardware_waits_for_its_description() -> None:
+def test_a_manager_without_hardware_waits_for_its_description():
     assert [(r.level, r.message) for r in waiting_reports()] == [
         (Level.WARN, "Waiting for robot description....")
     ] * 3
 
 
-def test_no_controller_at_all_is_worth_a_warning(ward: Ward) -> None:
+def test_no_controller_at_all_is_worth_a_warning(ward):
     assert (ward.controllers.level, ward.controllers.message) == (
         Level.WARN,
         "No controllers are currently loaded",
     )
 
 
-def test_states_and_a_sentence_on_all_of_them(ward: Ward) -> None:
+def test_states_and_a_sentence_on_all_of_them(ward):
     ward.bench.configure("a", commands=ALL)
     ward.bench.configure("b", states=("j0/position",))
     ward.bench.manager.switch_controller(SwitchRequest(("a",)))
@@ -156,7 +156,7 @@ def test_states_and_a_sentence_on_all_of_them(ward: Ward) -> None:
     assert ward.controllers.message == "All controllers are active"
 
 
-def test_controllers_without_active_hardware_are_an_error(ward: Ward) -> None:
+def test_controllers_without_active_hardware_are_an_error(ward):
     ward.bench.manager.set_hardware_component_state("FakeSystem", LifecycleState.INACTIVE)
     assert ward.controllers.level is Level.ERROR
     assert ward.controllers.message == (
@@ -169,7 +169,7 @@ def test_controllers_without_active_hardware_are_an_error(ward: Ward) -> None:
     assert ward.components.values == {"FakeSystem.state": "inactive"}
 
 
-def test_hardware_that_is_well(ward: Ward) -> None:
+def test_hardware_that_is_well(ward):
     ward.bench.tick(5)
     assert (ward.components.level, ward.components.message) == (
         Level.OK,
@@ -183,9 +183,7 @@ def test_hardware_that_is_well(ward: Ward) -> None:
     assert "us" in values["FakeSystem.read_cycle.execution_time"]
 
 
-def test_a_joint_state_that_is_not_a_number_is_named_and_logged_once(
-    ward: Ward, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_joint_state_that_is_not_a_number_is_named_and_logged_once(ward, caplog):
     states, names = ward.bench.hardware.states, ward.bench.hardware.state_interfaces
     where = [names.index("j1/position"), names.index("j3/velocity")]
     states[where] = math.nan
@@ -198,7 +196,7 @@ def test_a_joint_state_that_is_not_a_number_is_named_and_logged_once(
     assert ward.components.level is Level.OK
 
 
-def test_a_sensor_without_a_value_is_listed_among_the_values(bench: Any) -> None:
+def test_a_sensor_without_a_value_is_listed_among_the_values(bench):
     (info,) = parse_hardware_info(
         "<robot name='r'><ros2_control name='H' type='system'><hardware><plugin>"
         "mock_components/GenericSystem</plugin></hardware><joint name='j'><state_interface "
@@ -220,9 +218,7 @@ def test_a_sensor_without_a_value_is_listed_among_the_values(bench: Any) -> None
         (MeanTimeBand(1e-6, 1e-6), Level.ERROR),
     ],
 )
-def test_execution_times_are_judged_by_the_thresholds(
-    ward: Ward, band: MeanTimeBand, level: Level
-) -> None:
+def test_execution_times_are_judged_by_the_thresholds(ward, band, level):
     ward.bench.configure("a", commands=ALL)
     ward.bench.manager.switch_controller(SwitchRequest(("a",)))
     ward.bench.tick(3)
@@ -235,7 +231,7 @@ def test_execution_times_are_judged_by_the_thresholds(
     assert ward.components.level is level
 
 
-def test_a_controller_with_its_own_rate_is_checked_against_it(ward: Ward) -> None:
+def test_a_controller_with_its_own_rate_is_checked_against_it(ward):
     ward.bench.configure("slow", commands=ALL, rate_hz=50)
     ward.bench.manager.switch_controller(SwitchRequest(("slow",)))
     ward.bench.tick(20)
@@ -249,7 +245,7 @@ def test_a_controller_with_its_own_rate_is_checked_against_it(ward: Ward) -> Non
     assert ward.controllers.message == "Controllers with bad periodicity : [ slow ]"
 
 
-def test_a_refused_request_is_readable_until_it_succeeds(ward: Ward) -> None:
+def test_a_refused_request_is_readable_until_it_succeeds(ward):
     ward.refusals.note("load_controller", "x", "The 'type' param was not\ndefined for 'x'.")
     ward.refusals.note("switch_controller", "", "Could not activate")
     values = ward.controllers.values
@@ -259,7 +255,7 @@ def test_a_refused_request_is_readable_until_it_succeeds(ward: Ward) -> None:
     assert "x.load_controller" not in ward.controllers.values
 
 
-def test_only_the_latest_refusals_are_kept() -> None:
+def test_only_the_latest_refusals_are_kept():
     refusals = RefusedRequests()
     for i in range(CAPACITY + 5):
         refusals.note("load_controller", f"c{i}", "no")
@@ -269,7 +265,7 @@ def test_only_the_latest_refusals_are_kept() -> None:
     assert f"c{CAPACITY + 4}.load_controller" in reasons
 
 
-def test_a_loop_that_keeps_its_pace(running: Ward) -> None:
+def test_a_loop_that_keeps_its_pace(running):
     running.bench.tick(30)
     running.pace(*[0.01] * 120)
     assert (running.manager.level, running.manager.message) == (
@@ -284,9 +280,7 @@ def test_a_loop_that_keeps_its_pace(running: Ward) -> None:
 @pytest.mark.parametrize(
     ("rate_hz", "level"), [(104.0, Level.OK), (94.0, Level.WARN), (80.0, Level.ERROR)]
 )
-def test_the_managers_rate_is_held_against_its_parameter(
-    running: Ward, rate_hz: float, level: Level
-) -> None:
+def test_the_managers_rate_is_held_against_its_parameter(running, rate_hz, level):
     running.bench.tick(30, period_s=1.0 / rate_hz)
     assert running.manager.level is level
     assert (
@@ -304,16 +298,14 @@ def test_the_managers_rate_is_held_against_its_parameter(
         (0.0, 0.025, Level.OK),
     ],
 )
-def test_a_loop_that_lags_behind_real_time_is_worth_a_warning(
-    running: Ward, asked: float, period_s: float, level: Level
-) -> None:
+def test_a_loop_that_lags_behind_real_time_is_worth_a_warning(running, asked, period_s, level):
     running.pacer.real_time_factor = asked
     running.pace(*[period_s] * 200)
     assert running.manager.level is level
     assert ("cannot keep its pace" in running.manager.message) is bool(level)
 
 
-def test_a_stuck_loop_is_an_error_after_a_while(running: Ward) -> None:
+def test_a_stuck_loop_is_an_error_after_a_while(running):
     running.pace(*[0.01] * 30)
     running.pacer.begin()
     running.clock.advance(0.9)
@@ -323,7 +315,7 @@ def test_a_stuck_loop_is_an_error_after_a_while(running: Ward) -> None:
     assert running.manager.message == "The control loop has been stuck for 3.5 s"
 
 
-def test_a_paused_loop_is_not_blamed(bench: Any) -> None:
+def test_a_paused_loop_is_not_blamed(bench):
     ward = Ward(bench)
     ward.pace(0.5, 0.5)
     ward.loop.start(paused=True)
@@ -335,7 +327,7 @@ def test_a_paused_loop_is_not_blamed(bench: Any) -> None:
     assert ward.manager.message == "The control loop has ended"
 
 
-def test_a_report_names_the_worst_it_found() -> None:
+def test_a_report_names_the_worst_it_found():
     report = HealthReport("x")
     report.merge(Level.OK, "fine")
     report.merge(Level.WARN, "slow")
@@ -343,12 +335,12 @@ def test_a_report_names_the_worst_it_found() -> None:
     assert (report.level, report.message) == (Level.ERROR, "slow; late")
 
 
-def test_there_can_be_no_hardware(bench: Any) -> None:
+def test_there_can_be_no_hardware(bench):
     bench.manager = ControllerManager([], 100)
     assert Ward(bench).components.message == "No hardware components are loaded!"
 
 
-def test_a_latched_emergency_stop_is_a_warning(ward: Ward) -> None:
+def test_a_latched_emergency_stop_is_a_warning(ward):
     ward.bench.configure("mover", commands=("j0/position",))
     ward.bench.manager.set_emergency_stop(True)
     report = ward.controllers

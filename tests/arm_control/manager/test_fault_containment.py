@@ -56,16 +56,14 @@ class Cell:
 
 
 @pytest.fixture
-def cell(bench: Any) -> Cell:
+def cell(bench) -> Cell:
     """Return the cell with everything running."""
     return Cell(bench)
 
 
 @pytest.mark.parametrize("broken", [("arm",), ("gripper",), ("camera",), ("arm", "camera"), NAMES])
 @pytest.mark.parametrize("result", ["read_result", "write_result"])
-def test_an_error_of_hardware_stops_exactly_its_users(
-    cell: Cell, broken: tuple[str, ...], result: str
-) -> None:
+def test_an_error_of_hardware_stops_exactly_its_users(cell, broken, result):
     for name in broken:
         setattr(cell.hardware[name], result, HardwareReturn.ERROR)
     cell.bench.tick(2)
@@ -77,9 +75,7 @@ def test_an_error_of_hardware_stops_exactly_its_users(
 
 
 @pytest.mark.parametrize("broken", [("arm",), ("camera",), ("arm", "gripper")])
-def test_hardware_that_deactivates_itself_stops_exactly_its_commanders(
-    cell: Cell, broken: tuple[str, ...]
-) -> None:
+def test_hardware_that_deactivates_itself_stops_exactly_its_commanders(cell, broken):
     for name in broken:
         cell.hardware[name].write_result = HardwareReturn.DEACTIVATE
     cell.bench.tick(2)
@@ -89,7 +85,7 @@ def test_hardware_that_deactivates_itself_stops_exactly_its_commanders(
 
 
 @pytest.mark.parametrize("outcome", [HardwareReturn.ERROR, HardwareReturn.DEACTIVATE])
-def test_after_a_fault_all_of_it_can_run_again(cell: Cell, outcome: HardwareReturn) -> None:
+def test_after_a_fault_all_of_it_can_run_again(cell, outcome):
     cell.hardware["arm"].write_result = outcome
     cell.bench.tick()
     cell.hardware["arm"].write_result = HardwareReturn.OK
@@ -100,7 +96,7 @@ def test_after_a_fault_all_of_it_can_run_again(cell: Cell, outcome: HardwareRetu
     assert cell.active == set(EVERYBODY)
 
 
-def test_hardware_that_cannot_clean_up_after_its_error_is_finalized(cell: Cell) -> None:
+def test_hardware_that_cannot_clean_up_after_its_error_is_finalized(cell):
     cell.hardware["arm"].read_result = HardwareReturn.ERROR
     cell.hardware["arm"].refused.add("on_cleanup")
     cell.bench.tick()
@@ -108,16 +104,14 @@ def test_hardware_that_cannot_clean_up_after_its_error_is_finalized(cell: Cell) 
 
 
 @pytest.mark.parametrize("step", ["cleanup", "shutdown"])
-def test_a_controller_that_raises_on_shutdown_is_unloaded_anyway(
-    bench: Any, caplog: pytest.LogCaptureFixture, step: str
-) -> None:
+def test_a_controller_that_raises_on_shutdown_is_unloaded_anyway(bench, caplog, step):
     bench.configure("bad").raises.add(step)
     bench.manager.unload_controller("bad")
     assert bench.states() == {}
     assert f"bad broke in {step}" in caplog.text
 
 
-def test_each_failed_controller_gets_its_own_fallbacks(bench: Any) -> None:
+def test_each_failed_controller_gets_its_own_fallbacks(bench):
     for name, joint in (("spare0", "j0"), ("spare1", "j1")):
         bench.configure(name, commands=(f"{joint}/position",))
     bad = [
@@ -136,7 +130,7 @@ def test_each_failed_controller_gets_its_own_fallbacks(bench: Any) -> None:
     }
 
 
-def test_a_controller_may_have_several_fallbacks_one_of_them_running(bench: Any) -> None:
+def test_a_controller_may_have_several_fallbacks_one_of_them_running(bench):
     bench.configure("watcher", states=("j0/position",))
     bench.configure("mover", commands=("j0/position",))
     bad = bench.configure("bad", commands=("j0/position",), fallback_names=("mover", "watcher"))
@@ -148,7 +142,7 @@ def test_a_controller_may_have_several_fallbacks_one_of_them_running(bench: Any)
     assert bench.events.count("watcher activate") == 1
 
 
-def test_a_fallback_that_fails_too_is_stopped_in_its_turn(bench: Any) -> None:
+def test_a_fallback_that_fails_too_is_stopped_in_its_turn(bench):
     bench.configure("spare", commands=("j0/position",)).fails_update = True
     bench.configure("bad", commands=("j0/position",), fallback_names=("spare",)).fails_update = True
     bench.manager.switch_controller(SwitchRequest(("bad",)))
@@ -156,7 +150,7 @@ def test_a_fallback_that_fails_too_is_stopped_in_its_turn(bench: Any) -> None:
     assert bench.states() == {"bad": "inactive", "spare": "inactive"}
 
 
-def test_observers_are_told_of_every_fault(cell: Cell, observer: Any) -> None:
+def test_observers_are_told_of_every_fault(cell, observer):
     cell.bench.manager.add_observer(observer)
     cell.hardware["camera"].read_result = HardwareReturn.ERROR
     cell.bench.tick()
@@ -168,9 +162,7 @@ def test_observers_are_told_of_every_fault(cell: Cell, observer: Any) -> None:
 
 
 @pytest.mark.parametrize("step", ["configure", "activate", "deactivate", "cleanup"])
-def test_a_controller_that_raises_in_a_transition_is_reported_and_claims_nothing(
-    bench: Any, step: str
-) -> None:
+def test_a_controller_that_raises_in_a_transition_is_reported_and_claims_nothing(bench, step):
     manager, probe = bench.manager, bench.load("a")
     probe.raises.add(step)
     said: list[str] = []
@@ -187,7 +179,7 @@ def test_a_controller_that_raises_in_a_transition_is_reported_and_claims_nothing
     assert manager.resources.claimant("j0/position") is None
 
 
-def test_a_thousand_switches_leave_one_holder(bench: Any) -> None:
+def test_a_thousand_switches_leave_one_holder(bench):
     names = ["a", "b"]
     for name in names:
         bench.configure(name, commands=("j0/position",))
@@ -211,14 +203,12 @@ def raising(error: BaseException) -> Callable[..., NoReturn]:
 
 
 @pytest.fixture(params=[SystemExit, asyncio.CancelledError])
-def raised(request: pytest.FixtureRequest) -> BaseException:
+def raised(request) -> BaseException:
     return request.param(1)
 
 
 @pytest.mark.parametrize("exchange", ["read", "write"])
-def test_hardware_that_wants_to_end_the_process_is_taken_down(
-    cell: Cell, raised: BaseException, exchange: str, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_hardware_that_wants_to_end_the_process_is_taken_down(cell, raised, exchange, caplog):
     setattr(cell.hardware["arm"], exchange, raising(raised))
     cell.bench.tick(2)
     assert cell.components["arm"] == "unconfigured"
@@ -227,18 +217,14 @@ def test_hardware_that_wants_to_end_the_process_is_taken_down(
     assert type(raised).__name__ in caplog.text
 
 
-def test_a_life_cycle_step_that_wants_to_end_the_process_has_failed(
-    cell: Cell, raised: BaseException
-) -> None:
+def test_a_life_cycle_step_that_wants_to_end_the_process_has_failed(cell, raised):
     cell.hardware["arm"].on_deactivate = raising(raised)
     reason = f"on_deactivate of hardware component 'arm' raised {type(raised).__name__}"
     with pytest.raises(ControllerManagerError, match=reason):
         cell.bench.manager.set_hardware_component_state("arm", LifecycleState.INACTIVE)
 
 
-def test_a_controller_that_wants_to_end_the_process_is_stopped(
-    bench: Any, raised: BaseException, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_controller_that_wants_to_end_the_process_is_stopped(bench, raised, caplog):
     bench.configure("bad", commands=("j0/position",)).update = raising(raised)
     bench.manager.switch_controller(SwitchRequest(("bad",)))
     bench.tick()
@@ -247,7 +233,7 @@ def test_a_controller_that_wants_to_end_the_process_is_stopped(
     assert type(raised).__name__ in caplog.text
 
 
-def test_ctrl_c_is_not_a_failure(cell: Cell) -> None:
+def test_ctrl_c_is_not_a_failure(cell):
     for name in ("read", "on_deactivate"):
         setattr(cell.hardware["arm"], name, raising(KeyboardInterrupt()))
     with pytest.raises(KeyboardInterrupt):

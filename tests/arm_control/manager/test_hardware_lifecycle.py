@@ -18,7 +18,7 @@ ALL = ("j0/position", "j1/position", "j2/position", "j3/position")
 MODES = ("position", "velocity")
 
 
-def test_bring_up_activates_all_and_reads_once() -> None:
+def test_bring_up_activates_all_and_reads_once():
     hardware = fake_hardware(initial_positions={"j2": 0.7})
     manager = ControllerManager([hardware], 100)
     assert np.isnan(manager.resources.states).all()
@@ -27,7 +27,7 @@ def test_bring_up_activates_all_and_reads_once() -> None:
     assert manager.resources.states.reshape(4, 3)[:, 0].tolist() == [0.0, 0.0, 0.7, 0.0]
 
 
-def test_bring_up_leaves_components_in_their_initial_states() -> None:
+def test_bring_up_leaves_components_in_their_initial_states():
     names = ("A", "B", "C")
     hardware = [fake_hardware((f"{name}1",), name=name) for name in names]
     manager = ControllerManager(hardware, 100)
@@ -39,14 +39,14 @@ def test_bring_up_leaves_components_in_their_initial_states() -> None:
     ]
 
 
-def test_bring_up_names_the_component_that_does_not_exist(bench: Any) -> None:
+def test_bring_up_names_the_component_that_does_not_exist(bench):
     with pytest.raises(
         ControllerManagerError, match="no hardware component 'X'; the components are FakeSys"
     ):
         bench.manager.bring_up(inactive=["X"])
 
 
-def test_bring_up_says_which_step_failed() -> None:
+def test_bring_up_says_which_step_failed():
     hardware = fake_hardware()
     hardware.refused.add("on_activate")
     with pytest.raises(ControllerManagerError, match="on_activate of hardware component 'FakeSys"):
@@ -64,14 +64,14 @@ def grouped(*names: str) -> list[FakeHardware]:
     return components
 
 
-def test_a_group_is_configured_before_any_of_it_is_activated() -> None:
+def test_a_group_is_configured_before_any_of_it_is_activated():
     hardware = grouped("A", "B")
     ControllerManager(hardware, 100).bring_up()
     configure, activate = "on_configure", "on_activate"
     assert hardware[0].events == [configure, configure, activate, activate, configure, activate]
 
 
-def test_where_one_of_a_group_fails_all_go_back() -> None:
+def test_where_one_of_a_group_fails_all_go_back():
     hardware = grouped("A", "B")
     hardware[1].refused.add("on_activate")
     policy = ManagerPolicy(end_on_initial_state_failure=False)
@@ -81,15 +81,13 @@ def test_where_one_of_a_group_fails_all_go_back() -> None:
     assert states == ["unconfigured", "unconfigured", "active"]
 
 
-def test_the_update_rate_must_be_positive() -> None:
+def test_the_update_rate_must_be_positive():
     with pytest.raises(ControllerManagerError, match="update_rate must be positive, not 0"):
         ControllerManager([], 0)
 
 
 @pytest.mark.parametrize("result", ["read_result", "write_result"])
-def test_hardware_that_fails_goes_down_with_its_users_only(
-    result: str, caplog: pytest.LogCaptureFixture, bench: Any
-) -> None:
+def test_hardware_that_fails_goes_down_with_its_users_only(result, caplog, bench):
     other = fake_hardware(("k0",), name="Other")
     bench.manager = ControllerManager([bench.hardware, other], 100)
     bench.manager.bring_up()
@@ -107,7 +105,7 @@ def test_hardware_that_fails_goes_down_with_its_users_only(
     assert "resulted in an error: [ FakeSystem ]" in caplog.text
 
 
-def test_hardware_that_raises_counts_as_failed(bench: Any, caplog: Any) -> None:
+def test_hardware_that_raises_counts_as_failed(bench, caplog):
     def broken(time_s: float, period_s: float) -> HardwareReturn:
         raise OSError("cable out")
 
@@ -118,7 +116,7 @@ def test_hardware_that_raises_counts_as_failed(bench: Any, caplog: Any) -> None:
     assert "cable out" in caplog.text
 
 
-def test_hardware_that_failed_comes_back_with_its_interfaces(bench: Any) -> None:
+def test_hardware_that_failed_comes_back_with_its_interfaces(bench):
     bench.configure("a", commands=ALL)
     bench.manager.switch_controller(SwitchRequest(("a",)))
     bench.hardware.read_result = HardwareReturn.ERROR
@@ -131,7 +129,7 @@ def test_hardware_that_failed_comes_back_with_its_interfaces(bench: Any) -> None
     assert accepted.ok
 
 
-def test_hardware_that_deactivates_itself_stops_only_its_commanders(bench: Any) -> None:
+def test_hardware_that_deactivates_itself_stops_only_its_commanders(bench):
     bench.configure("user", commands=ALL)
     bench.configure("watcher", states=("j1/velocity",))
     bench.manager.switch_controller(SwitchRequest(("user", "watcher")))
@@ -143,9 +141,7 @@ def test_hardware_that_deactivates_itself_stops_only_its_commanders(bench: Any) 
 
 
 @pytest.mark.parametrize("stops_users", [True, False])
-def test_hardware_that_fails_to_deactivate_itself_is_taken_down_once(
-    bench: Any, caplog: pytest.LogCaptureFixture, stops_users: bool
-) -> None:
+def test_hardware_that_fails_to_deactivate_itself_is_taken_down_once(bench, caplog, stops_users):
     bench.hardware = fake_hardware()
     policy = ManagerPolicy(stop_with_self_deactivated_hardware=stops_users)
     bench.manager = ControllerManager([bench.hardware], 100, policy)
@@ -164,9 +160,7 @@ def test_hardware_that_fails_to_deactivate_itself_is_taken_down_once(
     assert caplog.text.count("on_deactivate of hardware component 'FakeSystem' returned False") == 1
 
 
-def test_inactive_hardware_may_keep_requesting_deactivation(
-    bench: Any, observer: Any, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_inactive_hardware_may_keep_requesting_deactivation(bench, observer, caplog):
     bench.hardware.read_result = HardwareReturn.DEACTIVATE
     bench.tick()
     assert caplog.text.count("'FakeSystem' deactivates itself") == 1
@@ -178,7 +172,7 @@ def test_inactive_hardware_may_keep_requesting_deactivation(
     assert component.state is LifecycleState.INACTIVE
 
 
-def test_inactive_hardware_is_read_but_not_written(bench: Any) -> None:
+def test_inactive_hardware_is_read_but_not_written(bench):
     bench.configure("a", commands=ALL)
     bench.manager.switch_controller(SwitchRequest(("a",)))
     bench.manager.set_hardware_component_state("FakeSystem", LifecycleState.INACTIVE)
@@ -188,7 +182,7 @@ def test_inactive_hardware_is_read_but_not_written(bench: Any) -> None:
     assert bench.manager.resources.states.reshape(4, 3)[:, 0].tolist() == [0.0] * 4
 
 
-def test_cleaning_hardware_up_stops_its_users(bench: Any) -> None:
+def test_cleaning_hardware_up_stops_its_users(bench):
     bench.configure("a", commands=ALL)
     bench.manager.switch_controller(SwitchRequest(("a",)))
     bench.manager.set_hardware_component_state("FakeSystem", LifecycleState.UNCONFIGURED)
@@ -197,18 +191,18 @@ def test_cleaning_hardware_up_stops_its_users(bench: Any) -> None:
     assert not any(i.is_available for i in (*commands, *states))
 
 
-def test_finalized_hardware_stays_finalized(bench: Any) -> None:
+def test_finalized_hardware_stays_finalized(bench):
     bench.manager.set_hardware_component_state("FakeSystem", LifecycleState.FINALIZED)
     with pytest.raises(ControllerManagerError, match="is finalized"):
         bench.manager.set_hardware_component_state("FakeSystem", LifecycleState.ACTIVE)
 
 
-def test_two_components_of_one_name_are_refused() -> None:
+def test_two_components_of_one_name_are_refused():
     with pytest.raises(ControllerManagerError, match="two hardware components are named 'Fake"):
         ControllerManager([fake_hardware(), fake_hardware(("k0",))], 100)
 
 
-def test_two_components_with_the_same_interface_are_refused() -> None:
+def test_two_components_with_the_same_interface_are_refused():
     with pytest.raises(ControllerManagerError, match=r"already belongs to .*'FakeSystem'"):
         ControllerManager([fake_hardware(), fake_hardware(("j0",), name="B")], 100)
 
@@ -238,7 +232,7 @@ def visited(rate_hz: int, **changes: Any) -> tuple[ControllerManager, Visited]:
     return manager, hardware
 
 
-def test_a_component_is_read_and_written_at_its_own_rate() -> None:
+def test_a_component_is_read_and_written_at_its_own_rate():
     manager, hardware = visited(25)
     # A clock that does not begin at zero: the first cycle is one of its own all the same.
     for cycle in range(100, 110):
@@ -253,9 +247,7 @@ def test_a_component_is_read_and_written_at_its_own_rate() -> None:
 
 
 @pytest.mark.parametrize(("rate_hz", "period_s"), [(0, 0.01), (25, 0.04)])
-def test_a_driver_may_divide_by_the_period_of_its_very_first_read(
-    rate_hz: int, period_s: float
-) -> None:
+def test_a_driver_may_divide_by_the_period_of_its_very_first_read(rate_hz, period_s):
     hardware = Visited(dataclasses.replace(fake_hardware().info, read_write_rate_hz=rate_hz))
     ControllerManager([hardware], 100).bring_up()
     assert hardware.visits == [("read", 0.0, period_s)]
@@ -269,9 +261,7 @@ def test_a_driver_may_divide_by_the_period_of_its_very_first_read(
         (500, 100, "asks for 500 Hz; it runs at the controller manager's 100 Hz"),
     ],
 )
-def test_the_rate_shown_is_the_one_that_it_runs_at(
-    asked: int, given: int, says: str, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_the_rate_shown_is_the_one_that_it_runs_at(asked, given, says, caplog):
     manager, _ = visited(asked)
     (component,) = manager.list_hardware_components()
     assert component.read_write_rate_hz == given
@@ -295,7 +285,7 @@ class OneMode(FakeHardware):
         return super().perform_command_mode_switch(start, stop)
 
 
-def test_a_joint_that_has_one_mode_at_a_time_changes_it_in_one_request(bench: Any) -> None:
+def test_a_joint_that_has_one_mode_at_a_time_changes_it_in_one_request(bench):
     hardware = OneMode()
     bench.manager = manager = ControllerManager([hardware], 100)
     manager.bring_up()
@@ -314,7 +304,7 @@ def test_a_joint_that_has_one_mode_at_a_time_changes_it_in_one_request(bench: An
     assert hardware.held == {"j0/position", "j1/velocity"}
 
 
-def test_interfaces_are_listed_with_the_type_of_the_description() -> None:
+def test_interfaces_are_listed_with_the_type_of_the_description():
     hardware = fake_hardware(("j0",))
     joint = hardware.info.joints[0]
     named = {i.name: dataclasses.replace(i, data_type="bool") for i in joint.command_interfaces}
@@ -327,7 +317,7 @@ def test_interfaces_are_listed_with_the_type_of_the_description() -> None:
     assert {i.name: i.data_type for i in states}["j0/velocity"] == "double"
 
 
-def test_a_component_with_is_async_gets_a_warning(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_component_with_is_async_gets_a_warning(caplog):
     manager, hardware = visited(0, is_async=True)
     (component,) = manager.list_hardware_components()
     assert component.is_async

@@ -47,7 +47,7 @@ class FakeNode:
 
 
 @pytest.fixture
-def make_health(request: pytest.FixtureRequest) -> Callable[[FakeNode], HealthPublisher]:
+def make_health(request) -> Callable[[FakeNode], HealthPublisher]:
     def make(node: FakeNode) -> HealthPublisher:
         health = HealthPublisher(
             node,  # pyright: ignore[reportArgumentType]
@@ -62,9 +62,7 @@ def make_health(request: pytest.FixtureRequest) -> Callable[[FakeNode], HealthPu
 
 
 @pytest.mark.parametrize("period_s", [1e5, float("inf")])
-def test_a_period_of_any_length_can_be_taken_back(
-    make_health: Callable[[FakeNode], HealthPublisher], period_s: float
-):
+def test_a_period_of_any_length_can_be_taken_back(make_health, period_s):
     node = FakeNode(period_s)
     make_health(node)
     assert node.asked.wait(PATIENCE_S), "the wait has begun"
@@ -76,7 +74,7 @@ def test_a_period_of_any_length_can_be_taken_back(
     assert node.published.wait(PATIENCE_S), "one report after the other"
 
 
-def test_a_stop_does_not_wait_for_the_period(make_health: Callable[[FakeNode], HealthPublisher]):
+def test_a_stop_does_not_wait_for_the_period(make_health):
     node = FakeNode(float("inf"))
     health = make_health(node)
     assert node.asked.wait(PATIENCE_S)

@@ -1,7 +1,5 @@
 """The named values of a manager."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -10,13 +8,13 @@ from arm_control.manager.introspection import InterfaceValues, ManagerSnapshot, 
 
 
 @pytest.fixture
-def snapshot(bench: Any) -> ManagerSnapshot:
+def snapshot(bench) -> ManagerSnapshot:
     snapshot = ManagerSnapshot(bench.manager)
     bench.manager.add_observer(snapshot)
     return snapshot
 
 
-def test_every_interface_has_its_value(bench: Any, snapshot: ManagerSnapshot) -> None:
+def test_every_interface_has_its_value(bench, snapshot):
     values = InterfaceValues(bench.manager, snapshot)
     bench.manager.resources.states[:] = np.arange(len(bench.manager.resources.states))
     bench.manager.resources.commands[:] = -1.0
@@ -32,7 +30,7 @@ def test_every_interface_has_its_value(bench: Any, snapshot: ManagerSnapshot) ->
     assert {v for name, v in shown.items() if name.startswith("command_interface.")} == {-1.0}
 
 
-def test_a_sample_is_a_copy_and_its_names_stay(bench: Any, snapshot: ManagerSnapshot) -> None:
+def test_a_sample_is_a_copy_and_its_names_stay(bench, snapshot):
     values = InterfaceValues(bench.manager, snapshot)
     first = values.sample()
     kept = first.values.copy()
@@ -41,7 +39,7 @@ def test_a_sample_is_a_copy_and_its_names_stay(bench: Any, snapshot: ManagerSnap
     assert values.sample().names is first.names
 
 
-def test_the_figures_are_those_of_the_runs(bench: Any, snapshot: ManagerSnapshot) -> None:
+def test_the_figures_are_those_of_the_runs(bench, snapshot):
     bench.configure("a", commands=("j0/position",))
     assert bench.manager.switch_controller(SwitchRequest(("a",))).ok
     for _ in range(5):
@@ -62,7 +60,7 @@ def test_the_figures_are_those_of_the_runs(bench: Any, snapshot: ManagerSnapshot
     assert statistics.sample().names is sample.names
 
 
-def test_what_never_ran_has_no_figures(bench: Any, snapshot: ManagerSnapshot) -> None:
+def test_what_never_ran_has_no_figures(bench, snapshot):
     bench.configure("a", commands=("j0/position",))
     sample = ManagerStatistics(bench.manager, snapshot, "controller_manager").sample()
     shown = dict(zip(sample.names, sample.values.tolist(), strict=True))

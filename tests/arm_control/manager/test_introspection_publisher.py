@@ -60,9 +60,7 @@ class CountedLoop:
         raise AssertionError("nobody subscribes")
 
 
-def test_the_loop_is_not_used_without_subscribers(
-    bench: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_loop_is_not_used_without_subscribers(bench, monkeypatch):
     from arm_control.manager.ros import introspection_publisher
 
     monkeypatch.setattr(introspection_publisher, "START_S", 0.0)
@@ -79,7 +77,7 @@ def test_the_loop_is_not_used_without_subscribers(
     assert not any(publisher.messages for publisher in node.publishers.values())
 
 
-def test_while_paused_only_new_names_are_published() -> None:
+def test_while_paused_only_new_names_are_published():
     from builtin_interfaces.msg import Time
 
     from arm_control.manager.ros.introspection_publisher import StatisticsTopic

@@ -17,6 +17,6 @@ MODULES = [
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_a_module_of_the_manager_logs_as_the_manager(name: str):
+def test_a_module_of_the_manager_logs_as_the_manager(name):
     logger = getattr(importlib.import_module(name), "logger", None)
     assert logger is None or logger.name == "controller_manager"

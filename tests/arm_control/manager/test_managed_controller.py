@@ -48,48 +48,46 @@ def rate(bench: Any) -> int:
     return bench.manager.list_controllers()[0].update_rate_hz
 
 
-def test_by_default_it_runs_at_the_managers_rate(bench: Any) -> None:
+def test_by_default_it_runs_at_the_managers_rate(bench):
     probe = start(bench, 0)
     bench.tick(5)
     assert (rate(bench), len(probe.updates)) == (100, 5)
 
 
-def test_a_divisor_is_kept(bench: Any) -> None:
+def test_a_divisor_is_kept(bench):
     probe = start(bench, 25)
     bench.tick(12)
     assert rate(bench) == 25
     assert [t for t, _ in probe.updates] == pytest.approx([0.0, 0.04, 0.08])
 
 
-def test_the_first_cycle_runs_at_once_with_the_nominal_period(bench: Any) -> None:
+def test_the_first_cycle_runs_at_once_with_the_nominal_period(bench):
     probe = start(bench, 20)
     bench.tick()
     assert probe.updates == [(0.0, 0.05)]
 
 
-def test_later_cycles_get_the_period_since_the_last(bench: Any) -> None:
+def test_later_cycles_get_the_period_since_the_last(bench):
     probe = start(bench, 50)
     bench.tick(4)
     assert [p for _, p in probe.updates] == pytest.approx([0.02, 0.02])
 
 
 @pytest.mark.parametrize(("asked", "given"), [(30, 33), (60, 50), (99, 100), (7, 7)])
-def test_a_rate_that_does_not_divide_is_lowered_to_one_that_does(
-    bench: Any, asked: int, given: int, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_rate_that_does_not_divide_is_lowered_to_one_that_does(bench, asked, given, caplog):
     start(bench, asked)
     assert rate(bench) == given
     assert ("does not divide" in caplog.text) is (asked != given)
 
 
-def test_a_rate_above_the_managers_is_the_managers(bench: Any, caplog: Any) -> None:
+def test_a_rate_above_the_managers_is_the_managers(bench, caplog):
     probe = start(bench, 1000)
     bench.tick(3)
     assert (rate(bench), len(probe.updates)) == (100, 3)
     assert "asks for 1000 Hz; it runs at the controller manager's 100 Hz" in caplog.text
 
 
-def test_setting_the_time_back_restarts_the_cadence(bench: Any) -> None:
+def test_setting_the_time_back_restarts_the_cadence(bench):
     probe = start(bench, 25)
     bench.tick(3)
     bench.time_s = 0.0
@@ -97,7 +95,7 @@ def test_setting_the_time_back_restarts_the_cadence(bench: Any) -> None:
     assert probe.updates[-1] == (0.0, 0.04)
 
 
-def test_each_activation_begins_with_a_first_cycle(bench: Any) -> None:
+def test_each_activation_begins_with_a_first_cycle(bench):
     probe = start(bench, 10)
     bench.tick(3)
     bench.manager.switch_controller(SwitchRequest(("slow",), ("slow",)))
@@ -107,7 +105,7 @@ def test_each_activation_begins_with_a_first_cycle(bench: Any) -> None:
 
 
 @given(st.lists(st.floats(0.8e-2, 1.2e-2), min_size=12, max_size=12).map(lambda some: some * 25))
-def test_the_mean_rate_is_kept_when_ticks_jitter(periods_s: list[float]) -> None:
+def test_the_mean_rate_is_kept_when_ticks_jitter(periods_s):
     probe = Counter(ControllerContext("slow", 100))
     managed = ManagedController(probe, "test/Counter", (), 100)
     managed.set_update_rate(25)

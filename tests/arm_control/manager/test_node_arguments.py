@@ -13,14 +13,14 @@ ARGV = shlex.split(
 )
 
 
-def test_the_manager_keeps_its_namespace_but_not_the_processs_name() -> None:
+def test_the_manager_keeps_its_namespace_but_not_the_processs_name():
     assert " ".join(manager_arguments(ARGV)) == (
         "--ros-args -r __ns:=/left --remap controller_manager:__node:=cm -r joint_states:=js "
         "-p robot_description:=<robot/> -p update_rate:=50 --params-file a.yaml"
     )
 
 
-def test_a_controller_gets_neither_namespace_nor_description() -> None:
+def test_a_controller_gets_neither_namespace_nor_description():
     taken = controller_arguments(ARGV, ["--ros-args", "-r", "a:=b"])
     assert " ".join(taken) == (
         "--ros-args --remap controller_manager:__node:=cm -r joint_states:=js -p update_rate:=50 "
@@ -29,5 +29,5 @@ def test_a_controller_gets_neither_namespace_nor_description() -> None:
 
 
 @pytest.mark.parametrize("argv", [[], ["x"], ["x", "--ros-args"], ["x", "--ros-args", "-r"]])
-def test_nothing_given_is_nothing_taken(argv: list[str]) -> None:
+def test_nothing_given_is_nothing_taken(argv):
     assert manager_arguments(argv) == ["--ros-args"]

@@ -11,7 +11,7 @@ TYPE = "{ros__parameters: {type: a/B}}"
 
 
 @pytest.fixture
-def path(tmp_path: Path) -> Path:
+def path(tmp_path) -> Path:
     return tmp_path / "controllers.yaml"
 
 
@@ -45,7 +45,7 @@ def lookup(path: Path, text: str, namespace: str = "/") -> object:
         f"ctrl: {TYPE}",
     ],
 )
-def test_it_is_found(path: Path, text: str) -> None:
+def test_it_is_found(path, text):
     assert lookup(path, text) == "a/B"
 
 
@@ -61,11 +61,11 @@ def test_it_is_found(path: Path, text: str) -> None:
         "/ns/controller_manager: {ros__parameters: {ctrl: {type: a/B}}}",
     ],
 )
-def test_it_is_found_in_a_namespace(path: Path, text: str) -> None:
+def test_it_is_found_in_a_namespace(path, text):
     assert lookup(path, text, "/ns") == "a/B"
 
 
-def test_all_that_a_node_is_given_is_what_rcl_gives_it(path: Path) -> None:
+def test_all_that_a_node_is_given_is_what_rcl_gives_it(path):
     path.write_text(
         "ctrl: {ros__parameters: {a: 1, gains: {j0: {p: 1e3}}}}\n"
         "/**: {ros__parameters: {a: 2, ids: [010, 011]}}\n"
@@ -76,13 +76,13 @@ def test_all_that_a_node_is_given_is_what_rcl_gives_it(path: Path) -> None:
     assert given == {"a": 2, "gains.j0.p": 1000.0, "gains.j0.i": 8.0, "ids": [8, 9]}
 
 
-def test_the_own_entry_wins_over_the_managers(path: Path) -> None:
+def test_the_own_entry_wins_over_the_managers(path):
     text = f"{{ctrl: {TYPE}, controller_manager: {{ros__parameters: {{ctrl: {{type: c/D}}}}}}}}"
     assert lookup(path, text) == "a/B"
 
 
 @pytest.mark.parametrize("text", [f"other: {TYPE}", f"/other/ctrl: {TYPE}"])
-def test_a_missing_parameter_is_none(path: Path, text: str) -> None:
+def test_a_missing_parameter_is_none(path, text):
     assert lookup(path, text) is None
 
 
@@ -95,36 +95,34 @@ def test_a_missing_parameter_is_none(path: Path, text: str) -> None:
         ("controller_manager: {ros__parameters: {ctrl: {type: a/B}}}", False),
     ],
 )
-def test_only_parameters_of_its_own_node_mention_a_controller(
-    path: Path, text: str, mentioned: bool
-) -> None:
+def test_only_parameters_of_its_own_node_mention_a_controller(path, text, mentioned):
     path.write_text(text)
     assert ControllerParameterFile(str(path)).mentions("ctrl", "/") is mentioned
 
 
-def test_a_bare_name_does_not_serve_in_a_namespace(path: Path) -> None:
+def test_a_bare_name_does_not_serve_in_a_namespace(path):
     with pytest.raises(ParameterError, match="without its namespace: write '/ns/ctrl' or"):
         lookup(path, f"ctrl: {TYPE}", "/ns")
 
 
-def test_an_entry_without_parameters_is_refused(path: Path) -> None:
+def test_an_entry_without_parameters_is_refused(path):
     with pytest.raises(ParameterError, match="'ctrl' has no mapping ros__parameters"):
         lookup(path, "ctrl: {type: a/B}")
 
 
-def test_a_missing_file_is_named(path: Path) -> None:
+def test_a_missing_file_is_named(path):
     with pytest.raises(ParameterError, match=f"cannot read parameter file '{path}'"):
         ControllerParameterFile(str(path))
 
 
 @pytest.mark.parametrize(("text", "says"), [("a: [", "is not YAML"), ("- a", "contains no nodes")])
-def test_a_file_of_another_kind_is_refused(path: Path, text: str, says: str) -> None:
+def test_a_file_of_another_kind_is_refused(path, text, says):
     path.write_text(text)
     with pytest.raises(ParameterError, match=says):
         ControllerParameterFile(str(path))
 
 
-def test_a_relative_path_becomes_absolute(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_relative_path_becomes_absolute(path, monkeypatch):
     path.write_text("a: {}")
     monkeypatch.chdir(path.parent)
     assert ControllerParameterFile(path.name).path == path

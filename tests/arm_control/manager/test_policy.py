@@ -25,9 +25,7 @@ def govern(bench: Any, **choices: bool) -> None:
 
 
 @pytest.mark.parametrize("commands", [ALL, ()])
-def test_without_handling_a_controller_that_raises_ends_the_tick(
-    bench: Any, commands: tuple[str, ...]
-) -> None:
+def test_without_handling_a_controller_that_raises_ends_the_tick(bench, commands):
     govern(bench, handle_exceptions=False)
     bench.manager.bring_up()
     bench.configure("bad", commands=commands).raises.add("update")
@@ -40,7 +38,7 @@ def test_without_handling_a_controller_that_raises_ends_the_tick(
 
 
 @pytest.mark.parametrize("exchange", ["read", "write"])
-def test_without_handling_hardware_that_raises_ends_the_tick(bench: Any, exchange: str) -> None:
+def test_without_handling_hardware_that_raises_ends_the_tick(bench, exchange):
     govern(bench, handle_exceptions=False)
     bench.manager.bring_up()
 
@@ -52,7 +50,7 @@ def test_without_handling_hardware_that_raises_ends_the_tick(bench: Any, exchang
         bench.tick()
 
 
-def test_without_handling_a_returned_error_still_stops_only_the_controller(bench: Any) -> None:
+def test_without_handling_a_returned_error_still_stops_only_the_controller(bench):
     govern(bench, handle_exceptions=False)
     bench.manager.bring_up()
     bench.configure("bad", commands=ALL).fails_update = True
@@ -62,14 +60,14 @@ def test_without_handling_a_returned_error_still_stops_only_the_controller(bench
 
 
 @pytest.mark.parametrize("allowed", [False, True])
-def test_inactive_hardware_can_be_claimed_where_allowed(bench: Any, allowed: bool) -> None:
+def test_inactive_hardware_can_be_claimed_where_allowed(bench, allowed):
     govern(bench, activate_with_inactive_hardware=allowed)
     bench.manager.bring_up(inactive=["FakeSystem"])
     bench.configure("a", commands=ALL)
     assert bench.manager.switch_controller(SwitchRequest(("a",))).ok is allowed
 
 
-def test_unconfigured_hardware_cannot_be_claimed_in_any_case(bench: Any) -> None:
+def test_unconfigured_hardware_cannot_be_claimed_in_any_case(bench):
     govern(bench, activate_with_inactive_hardware=True)
     bench.manager.bring_up(unconfigured=["FakeSystem"])
     bench.configure("a", commands=ALL)
@@ -77,7 +75,7 @@ def test_unconfigured_hardware_cannot_be_claimed_in_any_case(bench: Any) -> None
     assert "'j0/position' is not available" in result.message
 
 
-def test_controllers_can_outlive_hardware_that_deactivates_itself(bench: Any) -> None:
+def test_controllers_can_outlive_hardware_that_deactivates_itself(bench):
     govern(bench, stop_with_self_deactivated_hardware=False)
     bench.manager.bring_up()
     bench.configure("user", commands=ALL)
@@ -89,9 +87,7 @@ def test_controllers_can_outlive_hardware_that_deactivates_itself(bench: Any) ->
     assert component.state is LifecycleState.INACTIVE
 
 
-def test_hardware_that_does_not_come_up_can_be_let_pass(
-    bench: Any, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_hardware_that_does_not_come_up_can_be_let_pass(bench, caplog):
     good, bad = fake_hardware(), fake_hardware(("k0",), name="Bad")
     bad.refused.add("on_activate")
     manager = ControllerManager([bad, good], 100, ManagerPolicy(end_on_initial_state_failure=False))

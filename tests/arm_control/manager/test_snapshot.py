@@ -12,7 +12,6 @@ from arm_control.hardware.driver import HardwareReturn
 from arm_control.manager.introspection import ManagerSnapshot
 
 NAMES = ("a", "b", "c")
-VERBS = ("configure", "clean", "start", "stop", "fail")
 STEPS = (
     *(
         f"{verb} {name}"
@@ -52,7 +51,7 @@ def take(step: str, bench: Any, probes: dict[str, Any]) -> None:
 
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.sampled_from(STEPS), max_size=25))
-def test_it_is_never_behind(new_bench: Any, steps: list[str]) -> None:
+def test_it_is_never_behind(new_bench, steps):
     bench = new_bench()
     snapshot = ManagerSnapshot(bench.manager)
     bench.manager.add_observer(snapshot)
@@ -70,12 +69,12 @@ def test_it_is_never_behind(new_bench: Any, steps: list[str]) -> None:
 
 
 @pytest.fixture
-def new_bench(bench: Any) -> Any:
+def new_bench(bench):
     """Return a function that makes benches like the one of the fixture."""
     return type(bench)
 
 
-def test_records_of_the_runs_come_with_it(bench: Any) -> None:
+def test_records_of_the_runs_come_with_it(bench):
     snapshot = ManagerSnapshot(bench.manager)
     bench.manager.add_observer(snapshot)
     bench.configure("a", commands=("j0/position",))

@@ -1,7 +1,5 @@
 """The decision table of switch_controller: strictness, order, messages, claims."""
 
-from typing import Any
-
 import pytest
 
 from arm_control import (
@@ -47,14 +45,7 @@ TABLE = [
 
 @pytest.mark.parametrize(("activate", "deactivate", "strict_ok", "soft_ok"), TABLE)
 @pytest.mark.parametrize("strictness", Strictness)
-def test_empty_and_unknown_names(
-    bench: Any,
-    activate: tuple[str, ...],
-    deactivate: tuple[str, ...],
-    strict_ok: bool,
-    soft_ok: bool,
-    strictness: Strictness,
-) -> None:
+def test_empty_and_unknown_names(bench, activate, deactivate, strict_ok, soft_ok, strictness):
     bench.configure("on")
     bench.configure("off")
     bench.manager.switch_controller(SwitchRequest(("on",)))
@@ -64,30 +55,30 @@ def test_empty_and_unknown_names(
         assert bench.states() == {"off": "inactive", "on": "active"}
 
 
-def test_a_strict_switch_names_the_first_unknown_controller(bench: Any) -> None:
+def test_a_strict_switch_names_the_first_unknown_controller(bench):
     bench.configure("a")
     result = bench.manager.switch_controller(SwitchRequest(("a", "x", "y"), (), STRICT))
     assert result.message == unknown("activate", "x")
     assert bench.states() == {"a": "inactive"}
 
 
-def test_unknown_names_to_deactivate_come_first(bench: Any) -> None:
+def test_unknown_names_to_deactivate_come_first(bench):
     result = bench.manager.switch_controller(SwitchRequest(("x",), ("y",), STRICT))
     assert result.message == unknown("deactivate", "y")
 
 
-def test_a_soft_switch_of_only_unknown_names_lists_each_on_a_line(bench: Any) -> None:
+def test_a_soft_switch_of_only_unknown_names_lists_each_on_a_line(bench):
     result = bench.manager.switch_controller(SwitchRequest(("x", "y")))
     assert result.message == f"{unknown('activate', 'x')}\n{unknown('activate', 'y')}\n"
 
 
-def test_the_log_says_which_controllers_there_are(bench: Any, caplog: Any) -> None:
+def test_the_log_says_which_controllers_there_are(bench, caplog):
     bench.configure("a")
     bench.manager.switch_controller(SwitchRequest(("x",), (), STRICT))
     assert "(loaded: a)" in caplog.text
 
 
-def test_a_repeated_name_is_used_once(bench: Any) -> None:
+def test_a_repeated_name_is_used_once(bench):
     bench.configure("a", commands=("j0/position",))
     assert bench.manager.switch_controller(SwitchRequest(("a", "a"), (), STRICT)).ok
 
@@ -95,7 +86,7 @@ def test_a_repeated_name_is_used_once(bench: Any) -> None:
 # Candidates
 
 
-def test_an_unconfigured_controller_is_not_activated(bench: Any) -> None:
+def test_an_unconfigured_controller_is_not_activated(bench):
     bench.load("raw")
     bench.configure("a")
     strict = bench.manager.switch_controller(SwitchRequest(("raw", "a"), (), STRICT))
@@ -105,7 +96,7 @@ def test_an_unconfigured_controller_is_not_activated(bench: Any) -> None:
     assert (soft.ok, bench.states()) == (True, {"a": "active", "raw": "unconfigured"})
 
 
-def test_an_active_controller_is_not_activated_again(bench: Any) -> None:
+def test_an_active_controller_is_not_activated_again(bench):
     bench.configure("a")
     bench.manager.switch_controller(SwitchRequest(("a",)))
     strict = bench.manager.switch_controller(SwitchRequest(("a",), (), STRICT))
@@ -114,7 +105,7 @@ def test_an_active_controller_is_not_activated_again(bench: Any) -> None:
     assert (soft.ok, soft.message) == (True, NOTHING_TO_SWITCH)
 
 
-def test_an_inactive_controller_is_not_deactivated(bench: Any) -> None:
+def test_an_inactive_controller_is_not_deactivated(bench):
     bench.configure("a")
     strict = bench.manager.switch_controller(SwitchRequest((), ("a",), STRICT))
     soft = bench.manager.switch_controller(SwitchRequest((), ("a",)))
@@ -124,14 +115,14 @@ def test_an_inactive_controller_is_not_deactivated(bench: Any) -> None:
     assert (soft.ok, soft.message) == (True, NOTHING_TO_SWITCH)
 
 
-def test_a_refused_activation_is_reported_before_a_refused_deactivation(bench: Any) -> None:
+def test_a_refused_activation_is_reported_before_a_refused_deactivation(bench):
     bench.load("raw")
     bench.configure("a")
     result = bench.manager.switch_controller(SwitchRequest(("raw",), ("a",), STRICT))
     assert "'raw' can not be activated" in result.message
 
 
-def test_a_controller_in_both_lists_is_restarted(bench: Any) -> None:
+def test_a_controller_in_both_lists_is_restarted(bench):
     bench.configure("a", commands=("j0/position",))
     bench.manager.switch_controller(SwitchRequest(("a",)))
     bench.events.clear()
@@ -140,7 +131,7 @@ def test_a_controller_in_both_lists_is_restarted(bench: Any) -> None:
     assert bench.hardware.mode_switches[-1] == (("j0/position",), ("j0/position",))
 
 
-def test_an_inactive_controller_in_both_lists(bench: Any) -> None:
+def test_an_inactive_controller_in_both_lists(bench):
     bench.configure("a")
     strict = bench.manager.switch_controller(SwitchRequest(("a",), ("a",), STRICT))
     assert (strict.ok, bench.states()) == (False, {"a": "inactive"})
@@ -149,7 +140,7 @@ def test_an_inactive_controller_in_both_lists(bench: Any) -> None:
 
 
 @pytest.mark.parametrize("spare", ["missing", "unconfigured", "lacks an interface"])
-def test_fallbacks_must_be_ready_before_the_controller_starts(bench: Any, spare: str) -> None:
+def test_fallbacks_must_be_ready_before_the_controller_starts(bench, spare):
     if spare == "unconfigured":
         bench.load("spare")
     elif spare != "missing":
@@ -168,7 +159,7 @@ def refusal(name: str, trouble: str) -> str:
 
 
 @pytest.mark.parametrize("strictness", Strictness)
-def test_a_missing_command_interface(bench: Any, strictness: Strictness, caplog: Any) -> None:
+def test_a_missing_command_interface(bench, strictness, caplog):
     bench.configure("bad", commands=("j9/position",))
     bench.configure("good", commands=("j0/position",))
     result = bench.manager.switch_controller(SwitchRequest(("good", "bad"), (), strictness))
@@ -179,14 +170,14 @@ def test_a_missing_command_interface(bench: Any, strictness: Strictness, caplog:
 
 
 @pytest.mark.parametrize("strictness", Strictness)
-def test_a_missing_state_interface(bench: Any, strictness: Strictness) -> None:
+def test_a_missing_state_interface(bench, strictness):
     bench.configure("bad", states=("j0/torque",))
     result = bench.manager.switch_controller(SwitchRequest(("bad",), (), strictness))
     assert result.message == refusal("bad", "state interface 'j0/torque' is not available.")
 
 
 @pytest.mark.parametrize("strictness", Strictness)
-def test_a_claimed_interface(bench: Any, strictness: Strictness, caplog: Any) -> None:
+def test_a_claimed_interface(bench, strictness, caplog):
     bench.configure("holder", commands=("j0/position",))
     bench.configure("next", commands=("j0/position",))
     bench.manager.switch_controller(SwitchRequest(("holder",)))
@@ -198,9 +189,7 @@ def test_a_claimed_interface(bench: Any, strictness: Strictness, caplog: Any) ->
 
 
 @pytest.mark.parametrize("strictness", Strictness)
-def test_two_controllers_of_one_request_that_want_the_same(
-    bench: Any, strictness: Strictness
-) -> None:
+def test_two_controllers_of_one_request_that_want_the_same(bench, strictness):
     bench.configure("a", commands=("j0/position",))
     bench.configure("b", commands=("j0/position",))
     result = bench.manager.switch_controller(SwitchRequest(("a", "b"), (), strictness))
@@ -212,7 +201,7 @@ def test_two_controllers_of_one_request_that_want_the_same(
     assert bench.states() == {"a": "inactive", "b": "inactive"}
 
 
-def test_a_controller_of_all_commands_leaves_none_to_another(bench: Any) -> None:
+def test_a_controller_of_all_commands_leaves_none_to_another(bench):
     class Greedy(Controller[NoParameters]):
         def command_interface_configuration(self) -> InterfaceConfiguration:
             return InterfaceConfiguration.all()
@@ -235,7 +224,7 @@ def test_a_controller_of_all_commands_leaves_none_to_another(bench: Any) -> None
     assert bench.manager.switch_controller(SwitchRequest(("modest",), ("greedy",))).ok
 
 
-def test_a_finalized_controller_is_not_activated(bench: Any) -> None:
+def test_a_finalized_controller_is_not_activated(bench):
     bench.configure("a")
     bench.manager.shutdown()
     result = bench.manager.switch_controller(SwitchRequest(("a",), (), STRICT))
@@ -244,7 +233,7 @@ def test_a_finalized_controller_is_not_activated(bench: Any) -> None:
         bench.manager.configure_controller("a", None)
 
 
-def test_controllers_change_places_as_groups(bench: Any) -> None:
+def test_controllers_change_places_as_groups(bench):
     for name, joint in (("a", "j0"), ("b", "j1"), ("c", "j0"), ("d", "j1")):
         bench.configure(name, commands=(f"{joint}/position",))
     bench.manager.switch_controller(SwitchRequest(("a", "b"), (), STRICT))
@@ -253,7 +242,7 @@ def test_controllers_change_places_as_groups(bench: Any) -> None:
     assert bench.states() == {"d": "active", "c": "active", "b": "inactive", "a": "inactive"}
 
 
-def test_interfaces_released_by_the_same_request_are_free(bench: Any) -> None:
+def test_interfaces_released_by_the_same_request_are_free(bench):
     bench.configure("old", commands=("j0/position",))
     bench.configure("new", commands=("j0/position",))
     bench.manager.switch_controller(SwitchRequest(("old",)))
@@ -261,7 +250,7 @@ def test_interfaces_released_by_the_same_request_are_free(bench: Any) -> None:
     assert bench.states() == {"new": "active", "old": "inactive"}
 
 
-def test_state_interfaces_are_shared(bench: Any) -> None:
+def test_state_interfaces_are_shared(bench):
     bench.configure("a", states=("j0/position",))
     bench.configure("b", states=("j0/position",))
     assert bench.manager.switch_controller(SwitchRequest(("a", "b"), (), STRICT)).ok
@@ -270,7 +259,7 @@ def test_state_interfaces_are_shared(bench: Any) -> None:
 # Hardware's word
 
 
-def test_hardware_may_refuse(bench: Any) -> None:
+def test_hardware_may_refuse(bench):
     bench.configure("a", commands=("j0/position",))
     bench.hardware.refused.add("prepare_command_mode_switch")
     result = bench.manager.switch_controller(SwitchRequest(("a",)))
@@ -278,7 +267,7 @@ def test_hardware_may_refuse(bench: Any) -> None:
     assert bench.states() == {"a": "inactive"}
 
 
-def test_inactive_hardware_accepts_no_commands(bench: Any, caplog: Any) -> None:
+def test_inactive_hardware_accepts_no_commands(bench, caplog):
     bench.configure("a", commands=("j0/position",))
     bench.configure("watcher", states=("j0/position",))
     bench.manager.set_hardware_component_state("FakeSystem", LifecycleState.INACTIVE)
@@ -287,7 +276,7 @@ def test_inactive_hardware_accepts_no_commands(bench: Any, caplog: Any) -> None:
     assert bench.manager.switch_controller(SwitchRequest(("watcher",))).ok
 
 
-def test_a_mode_switch_that_fails_switches_nothing(bench: Any) -> None:
+def test_a_mode_switch_that_fails_switches_nothing(bench):
     bench.configure("old", commands=("j0/position",))
     bench.configure("new", commands=("j0/position",))
     bench.manager.switch_controller(SwitchRequest(("old",)))
@@ -301,7 +290,7 @@ def test_a_mode_switch_that_fails_switches_nothing(bench: Any) -> None:
     assert bench.states() == {"new": "inactive", "old": "active"}
 
 
-def test_hardware_gets_only_its_own_interfaces(bench: Any) -> None:
+def test_hardware_gets_only_its_own_interfaces(bench):
     bench.configure("a", commands=("j1/position", "j0/position"))
     bench.manager.switch_controller(SwitchRequest(("a",)))
     bench.manager.switch_controller(SwitchRequest((), ("a",)))
@@ -314,7 +303,7 @@ def test_hardware_gets_only_its_own_interfaces(bench: Any) -> None:
 # Execution
 
 
-def test_all_are_deactivated_before_any_is_activated(bench: Any) -> None:
+def test_all_are_deactivated_before_any_is_activated(bench):
     for name in ("a", "b"):
         bench.configure(f"old_{name}")
         bench.configure(f"new_{name}")
@@ -330,7 +319,7 @@ def test_all_are_deactivated_before_any_is_activated(bench: Any) -> None:
 
 
 @pytest.mark.parametrize("way", ["refuses", "raises"])
-def test_a_strict_switch_is_undone_when_one_activation_fails(bench: Any, way: str) -> None:
+def test_a_strict_switch_is_undone_when_one_activation_fails(bench, way):
     bench.configure("good", commands=("j0/position",))
     getattr(bench.configure("bad", commands=("j1/position",)), way).add("activate")
     result = bench.manager.switch_controller(SwitchRequest(("good", "bad"), (), STRICT))
@@ -340,7 +329,7 @@ def test_a_strict_switch_is_undone_when_one_activation_fails(bench: Any, way: st
     assert bench.states() == {"bad": "inactive", "good": "inactive"}
 
 
-def test_a_best_effort_switch_keeps_the_activated_controllers(bench: Any) -> None:
+def test_a_best_effort_switch_keeps_the_activated_controllers(bench):
     bench.configure("good", commands=("j0/position",))
     bench.configure("bad", commands=("j1/position",)).refuses.add("activate")
     result = bench.manager.switch_controller(SwitchRequest(("good", "bad")))
@@ -348,7 +337,7 @@ def test_a_best_effort_switch_keeps_the_activated_controllers(bench: Any) -> Non
     assert bench.states() == {"bad": "inactive", "good": "active"}
 
 
-def test_a_failed_activation_frees_interfaces_and_modes(bench: Any) -> None:
+def test_a_failed_activation_frees_interfaces_and_modes(bench):
     bench.configure("bad", commands=("j1/position",)).refuses.add("activate")
     bench.configure("next", commands=("j1/position",))
     bench.manager.switch_controller(SwitchRequest(("bad",)))
@@ -356,7 +345,7 @@ def test_a_failed_activation_frees_interfaces_and_modes(bench: Any) -> None:
     assert bench.manager.switch_controller(SwitchRequest(("next",))).ok
 
 
-def test_messages_of_success(bench: Any) -> None:
+def test_messages_of_success(bench):
     for name in ("a", "b", "c"):
         bench.configure(name)
     switch = bench.manager.switch_controller

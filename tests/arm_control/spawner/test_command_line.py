@@ -21,11 +21,11 @@ from arm_control.spawner.command_line import (
         (["--ros-args", "-r", "x:=y", "--", "a"], ["a"], ["--ros-args", "-r", "x:=y", "--"]),
     ],
 )
-def test_ros_arguments_are_parted_off(argv: list[str], own: list[str], ros: list[str]) -> None:
+def test_ros_arguments_are_parted_off(argv, own, ros):
     assert split_ros_arguments(argv) == (own, ros)
 
 
-def test_parameter_files_of_the_node_are_found() -> None:
+def test_parameter_files_of_the_node_are_found():
     ros = ["--ros-args", "--params-file", "a", "-p", "x:=1", "--params-file", "b", "--params-file"]
     assert parameter_files(ros) == ("a", "b")
 
@@ -39,13 +39,11 @@ def test_parameter_files_of_the_node_are_found() -> None:
         ("/other/manager", "/ns", "/other/manager"),
     ],
 )
-def test_a_relative_manager_is_looked_for_in_the_namespace(
-    manager: str, namespace: str, expected: str
-) -> None:
+def test_a_relative_manager_is_looked_for_in_the_namespace(manager, namespace, expected):
     assert absolute_name(manager, namespace) == expected
 
 
-def test_names_and_options_of_unspawner_may_be_mixed() -> None:
+def test_names_and_options_of_unspawner_may_be_mixed():
     assert parse_unspawner_options(["a", "-c", "/m", "b"]) == UnspawnerOptions(
         ("a", "b"), "/m", 5.0
     )
@@ -55,16 +53,14 @@ def test_names_and_options_of_unspawner_may_be_mixed() -> None:
 
 
 @pytest.mark.parametrize("arguments", [[], ["a", "--switch-timeout", "-1"], ["a", "--force"]])
-def test_a_wrong_command_line_of_unspawner_ends_with_code_2(
-    arguments: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_wrong_command_line_of_unspawner_ends_with_code_2(arguments, capsys):
     with pytest.raises(SystemExit) as end:
         parse_unspawner_options(arguments)
     assert end.value.code == 2
     assert "unspawner: error:" in capsys.readouterr().err
 
 
-def test_hardware_spawner_needs_a_target() -> None:
+def test_hardware_spawner_needs_a_target():
     assert parse_hardware_spawner_options(["a", "b", "--activate"]) == HardwareSpawnerOptions(
         ("a", "b"), LifecycleState.ACTIVE, "controller_manager", 0.0
     )
@@ -77,9 +73,7 @@ def test_hardware_spawner_needs_a_target() -> None:
 @pytest.mark.parametrize(
     "arguments", [[], ["a"], ["--activate"], ["a", "--activate", "--configure"], ["-c", "m"]]
 )
-def test_a_wrong_command_line_of_hardware_spawner_ends_with_code_2(
-    arguments: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_wrong_command_line_of_hardware_spawner_ends_with_code_2(arguments, capsys):
     with pytest.raises(SystemExit) as end:
         parse_hardware_spawner_options(arguments)
     assert end.value.code == 2

@@ -32,12 +32,12 @@ class Waiting:
 
 
 @pytest.fixture
-def path(tmp_path: Path) -> Path:
+def path(tmp_path) -> Path:
     return tmp_path / "locks" / "spawner.lock"
 
 
 @pytest.fixture
-def other(path: Path) -> Iterator[int]:
+def other(path) -> Iterator[int]:
     """Hold the lock as another spawner; closing the descriptor releases it."""
     path.parent.mkdir(parents=True)
     file = os.open(path, os.O_RDWR | os.O_CREAT)
@@ -59,15 +59,13 @@ def is_locked(path: Path) -> bool:
     ("environ", "folder"),
     [({"ROS_HOME": "/x"}, Path("/x")), ({"ROS_HOME": ""}, Path.home() / ".ros"), ({}, None)],
 )
-def test_its_path_is_the_same_as_ros2_controls(
-    environ: dict[str, str], folder: Path | None
-) -> None:
+def test_its_path_is_the_same_as_ros2_controls(environ, folder):
     folder = folder or Path.home() / ".ros"
     expected = folder / "locks" / "ros2-control-controller-spawner.lock"
     assert spawner_lock_path(environ) == expected
 
 
-def test_it_is_held_inside_and_free_after(path: Path) -> None:
+def test_it_is_held_inside_and_free_after(path):
     waiting = Waiting()
     with spawner_lock(path, waiting, waiting.clock):
         assert is_locked(path)
@@ -77,9 +75,7 @@ def test_it_is_held_inside_and_free_after(path: Path) -> None:
 
 
 @pytest.mark.parametrize("released_s", [0.5, 2.0])
-def test_it_waits_for_another_and_logs_a_long_wait(
-    path: Path, other: int, released_s: float, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_it_waits_for_another_and_logs_a_long_wait(path, other, released_s, caplog):
     caplog.set_level("INFO")
     waiting = Waiting()
 
@@ -94,9 +90,7 @@ def test_it_waits_for_another_and_logs_a_long_wait(
     assert caplog.messages == (said if released_s > SILENT_S else [])
 
 
-def test_it_gives_up_after_its_attempts(
-    path: Path, other: int, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_it_gives_up_after_its_attempts(path, other, caplog):
     waiting = Waiting()
     with (
         pytest.raises(SpawnError, match="another spawner holds"),
@@ -108,7 +102,7 @@ def test_it_gives_up_after_its_attempts(
     assert len(caplog.records) == ATTEMPTS
 
 
-def test_the_end_of_the_process_ends_the_wait(path: Path, other: int) -> None:
+def test_the_end_of_the_process_ends_the_wait(path, other):
     waiting = Waiting()
     waiting.interrupt_at_s = 1.0
     with pytest.raises(WaitInterruptedError), spawner_lock(path, waiting, waiting.clock):
@@ -116,9 +110,7 @@ def test_the_end_of_the_process_ends_the_wait(path: Path, other: int) -> None:
     assert waiting.clock.now_s() < 2.0
 
 
-def test_a_folder_that_cannot_be_written_does_no_harm(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_folder_that_cannot_be_written_does_no_harm(tmp_path, caplog):
     (tmp_path / "file").touch()
     reached = False
     with spawner_lock(tmp_path / "file" / "x.lock", Waiting(), ManualClock()):

@@ -20,7 +20,7 @@ Names are never taken out. A class that moves gets its old name into `EARLIER_NA
 
 
 @pytest.mark.parametrize("name", SAVED)
-def test_a_class_of_an_earlier_build_is_found(name: str):
+def test_a_class_of_an_earlier_build_is_found(name):
     assert isinstance(class_named(name), type)
 
 
@@ -29,7 +29,7 @@ def test_every_earlier_name_is_one_of_those():
 
 
 @pytest.mark.parametrize("name", EARLIER_ATTRIBUTES)
-def test_earlier_attributes_are_listed_by_the_present_name_of_their_class(name: str):
+def test_earlier_attributes_are_listed_by_the_present_name_of_their_class(name):
     kind = class_named(name)
     assert class_name(kind) == name
     given = {earlier: number for number, earlier in enumerate(EARLIER_ATTRIBUTES[name])}

@@ -3,14 +3,14 @@
 import errno
 import json
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 import serial
 
-from arm_control import HardwareInfo, HardwareReturn
+from arm_control import HardwareReturn
 from arm_control.errors import HardwareInfoError
 from arm_drivers.feetech.hardware import FeetechHardware
 from arm_sim.bench.feetech_servos import EmulatedServo, FeetechServos
@@ -20,39 +20,30 @@ from arm_sim.bench.serial_device import EmulatedPort, ReplyFaults
 WAIT_S = 60.0
 STEP = 2 * np.pi / 4096
 POSITIONS = [0, 3, 6]
-Info = Callable[..., HardwareInfo]
-Run = Callable[..., HardwareReturn]
 
 
 @pytest.fixture
-def hardware(feetech_info: Info) -> Iterator[FeetechHardware]:
+def hardware(feetech_info) -> Iterator[FeetechHardware]:
     made = FeetechHardware(feetech_info())
     yield made
     made.on_cleanup()
 
 
 @pytest.fixture
-def active(hardware: FeetechHardware, servos: FeetechServos) -> FeetechHardware:
+def active(hardware, servos) -> FeetechHardware:
     servos.servos[2].position = 1000.0
     assert hardware.on_configure()
     assert hardware.on_activate()
     return hardware
 
 
-def test_it_holds_the_measured_positions_when_it_is_activated(
-    active: FeetechHardware, servos: FeetechServos
-):
+def test_it_holds_the_measured_positions_when_it_is_activated(active, servos):
     assert active.states[POSITIONS] == pytest.approx([0.0, (1000 - 2048) * STEP, 0.0])
     assert [servo.load(42) for servo in servos.servos.values()] == [2048, 1000, 2048]
     assert [servo.memory[40] for servo in servos.servos.values()] == [1, 1, 1]
 
 
-def test_a_servo_that_misses_its_first_goal_is_not_powered(
-    hardware: FeetechHardware,
-    servos: FeetechServos,
-    monkeypatch: pytest.MonkeyPatch,
-    caplog: pytest.LogCaptureFixture,
-):
+def test_a_servo_that_misses_its_first_goal_is_not_powered(hardware, servos, monkeypatch, caplog):
     servos.servos[2].position = 1000.0
     monkeypatch.setattr(EmulatedServo, "write", lambda servo, address, data: None)
     assert hardware.on_configure()
@@ -61,15 +52,13 @@ def test_a_servo_that_misses_its_first_goal_is_not_powered(
     assert not any(servo.memory[40] for servo in servos.servos.values())
 
 
-def test_it_follows_commands_and_computes_the_joint_that_mimics(
-    active: FeetechHardware, run_until: Run
-):
+def test_it_follows_commands_and_computes_the_joint_that_mimics(active, run_until):
     active.commands[0] = 0.5
     assert run_until(active, lambda: active.states[0] > 0.499) is HardwareReturn.OK
     assert active.states[9] == pytest.approx(2 * active.states[0] + 0.1)
 
 
-def test_it_moves_no_faster_than_it_may(feetech_info: Info, servos: FeetechServos, run_until: Run):
+def test_it_moves_no_faster_than_it_may(feetech_info, servos, run_until):
     hardware = FeetechHardware(feetech_info(max_velocity="0.01"))
     started = time.monotonic()
     assert hardware.on_configure()
@@ -81,10 +70,7 @@ def test_it_moves_no_faster_than_it_may(feetech_info: Info, servos: FeetechServo
 
 
 def test_a_goal_outside_a_servo_s_limits_stops_there_and_is_told(
-    hardware: FeetechHardware,
-    servos: FeetechServos,
-    caplog: pytest.LogCaptureFixture,
-    run_until: Run,
+    hardware, servos, caplog, run_until
 ):
     servos.servos[1].store(9, 1500)
     servos.servos[1].store(11, 2500)
@@ -95,9 +81,7 @@ def test_a_goal_outside_a_servo_s_limits_stops_there_and_is_told(
     assert "servo 1 (j0) is told 2.000 rad; the arm's own limits are -0.841 to 0.693" in caplog.text
 
 
-def test_an_emergency_stop_holds_whatever_is_commanded(
-    active: FeetechHardware, servos: FeetechServos, run_until: Run
-):
+def test_an_emergency_stop_holds_whatever_is_commanded(active, servos, run_until):
     active.set_emergency_stop(True)
     active.commands[0] = 1.0
     thread = active.thread
@@ -110,9 +94,7 @@ def test_an_emergency_stop_holds_whatever_is_commanded(
 
 
 @pytest.mark.parametrize("kind", ["lost", "damaged", "late", "doubled", "short", "noise"])
-def test_faulty_replies_cost_nothing_but_their_values(
-    kind: str, feetech_info: Info, servos: FeetechServos, port: EmulatedPort, run_until: Run
-):
+def test_faulty_replies_cost_nothing_but_their_values(kind, feetech_info, servos, port, run_until):
     servos.servos[2].position = 1000.0
     hardware = FeetechHardware(feetech_info(reply_timeout="0.1", max_missed="100"))
     assert hardware.on_configure()
@@ -132,7 +114,7 @@ def test_faulty_replies_cost_nothing_but_their_values(
 
 
 def test_a_servo_that_goes_silent_is_named_and_counted_and_the_others_hold(
-    active: FeetechHardware, servos: FeetechServos, caplog: pytest.LogCaptureFixture, run_until: Run
+    active, servos, caplog, run_until
 ):
     servos.servos[2].silent = True
     assert run_until(active) is HardwareReturn.ERROR
@@ -145,7 +127,7 @@ def test_a_servo_that_goes_silent_is_named_and_counted_and_the_others_hold(
 
 
 def test_a_port_that_is_pulled_out_is_told_and_the_arm_is_taken_up_again(
-    active: FeetechHardware, port: EmulatedPort, caplog: pytest.LogCaptureFixture, run_until: Run
+    active, port, caplog, run_until
 ):
     port.unplug()
     assert run_until(active) is HardwareReturn.ERROR
@@ -159,7 +141,7 @@ def test_a_port_that_is_pulled_out_is_told_and_the_arm_is_taken_up_again(
 
 
 def test_an_overload_ends_it_and_is_over_when_it_is_activated_again(
-    active: FeetechHardware, servos: FeetechServos, caplog: pytest.LogCaptureFixture, run_until: Run
+    active, servos, caplog, run_until
 ):
     servos.servos[1].overloaded = True
     assert run_until(active) is HardwareReturn.ERROR
@@ -182,12 +164,7 @@ def test_an_overload_ends_it_and_is_over_when_it_is_activated_again(
     ],
 )
 def test_a_fault_of_a_servo_is_told_until_the_arm_is_fit_again(
-    active: FeetechHardware,
-    servos: FeetechServos,
-    alarm: int,
-    voltage: int,
-    sentence: str,
-    run_until: Run,
+    active, servos, alarm, voltage, sentence, run_until
 ):
     assert active.health().problem == ""
     servos.servos[2].alarms, servos.servos[2].memory[62] = alarm, voltage
@@ -201,18 +178,14 @@ def test_a_fault_of_a_servo_is_told_until_the_arm_is_fit_again(
     assert active.health().problem == ""
 
 
-def test_a_joint_that_cannot_follow_is_told(
-    active: FeetechHardware, servos: FeetechServos, caplog: pytest.LogCaptureFixture, run_until: Run
-):
+def test_a_joint_that_cannot_follow_is_told(active, servos, caplog, run_until):
     servos.servos[1].blocked = True
     active.commands[0] = 0.5
     run_until(active, lambda: "is pushed, blocked or too weak" in caplog.text)
     assert "servo 1 (j0) is 0.50 rad from where it is held" in caplog.text
 
 
-def test_without_commands_it_holds(
-    feetech_info: Info, servos: FeetechServos, caplog: pytest.LogCaptureFixture
-):
+def test_without_commands_it_holds(feetech_info, servos, caplog):
     hardware = FeetechHardware(feetech_info(watchdog="0.05", max_velocity="0.1"))
     assert hardware.on_configure()
     assert hardware.on_activate()
@@ -226,9 +199,7 @@ def test_without_commands_it_holds(
 
 
 @pytest.mark.parametrize(("at_end", "torque"), [("hold", 1), ("release", 0)])
-def test_at_the_end_it_holds_or_lets_go(
-    at_end: str, torque: int, feetech_info: Info, servos: FeetechServos
-):
+def test_at_the_end_it_holds_or_lets_go(at_end, torque, feetech_info, servos):
     hardware = FeetechHardware(feetech_info(at_end=at_end))
     assert hardware.on_configure()
     assert hardware.on_activate()
@@ -267,11 +238,7 @@ def _wheel(servos: FeetechServos) -> None:
     ],
 )
 def test_an_arm_that_is_not_fit_is_refused_in_one_sentence(
-    spoil: Callable[[FeetechServos], None],
-    sentence: str,
-    hardware: FeetechHardware,
-    servos: FeetechServos,
-    caplog: pytest.LogCaptureFixture,
+    spoil, sentence, hardware, servos, caplog
 ):
     spoil(servos)
     assert not hardware.on_configure()
@@ -287,9 +254,7 @@ def calibration(folder: Path, **changes: int) -> str:
     return str(file)
 
 
-def test_lerobot_s_calibration_gives_middle_direction_and_range(
-    tmp_path: Path, feetech_info: Info, servos: FeetechServos
-):
+def test_lerobot_s_calibration_gives_middle_direction_and_range(tmp_path, feetech_info, servos):
     servos.servos[1].position = 2147.0
     hardware = FeetechHardware(feetech_info(calibration=calibration(tmp_path, drive_mode=1)))
     assert hardware.on_configure()
@@ -298,7 +263,7 @@ def test_lerobot_s_calibration_gives_middle_direction_and_range(
 
 
 def test_a_joint_that_rests_outside_its_calibrated_range_does_not_jump_into_it(
-    tmp_path: Path, feetech_info: Info, servos: FeetechServos, run_until: Run
+    tmp_path, feetech_info, servos, run_until
 ):
     servos.servos[1].position = 3550.0
     file = calibration(tmp_path)
@@ -319,11 +284,7 @@ def test_a_joint_that_rests_outside_its_calibrated_range_does_not_jump_into_it(
     ],
 )
 def test_the_calibration_of_another_arm_is_refused(
-    changes: dict[str, int],
-    sentence: str,
-    tmp_path: Path,
-    feetech_info: Info,
-    caplog: pytest.LogCaptureFixture,
+    changes, sentence, tmp_path, feetech_info, caplog
 ):
     hardware = FeetechHardware(feetech_info(calibration=calibration(tmp_path, **changes)))
     assert not hardware.on_configure()
@@ -338,28 +299,26 @@ def test_the_calibration_of_another_arm_is_refused(
         ({"at_end": "fall"}, "at_end must be one of hold, release"),
     ],
 )
-def test_a_wrong_parameter_is_told(parameters: dict[str, str], sentence: str, feetech_info: Info):
+def test_a_wrong_parameter_is_told(parameters, sentence, feetech_info):
     with pytest.raises(HardwareInfoError) as caught:
         FeetechHardware(feetech_info(**parameters))
     assert sentence in str(caught.value)
 
 
-def test_a_file_that_is_not_a_port_is_told(
-    tmp_path: Path, feetech_info: Info, caplog: pytest.LogCaptureFixture
-):
+def test_a_file_that_is_not_a_port_is_told(tmp_path, feetech_info, caplog):
     file = tmp_path / "file"
     file.touch()
     assert not FeetechHardware(feetech_info(port=str(file))).on_configure()
     assert f"{file} is not a serial port" in caplog.text
 
 
-def test_the_wrong_baud_rate_is_told(feetech_info: Info, caplog: pytest.LogCaptureFixture):
+def test_the_wrong_baud_rate_is_told(feetech_info, caplog):
     slow = feetech_info(baud="115200", reply_timeout="0.02")
     assert not FeetechHardware(slow).on_configure()
     assert "at 115200 baud: check the power of the servos, the port and the baud" in caplog.text
 
 
-def test_another_device_is_told(tmp_path: Path, make_info: Info, caplog: pytest.LogCaptureFixture):
+def test_another_device_is_told(tmp_path, make_info, caplog):
     with EmulatedPort(EmulatedMyCobot(1_000_000), tmp_path / "cobot") as port:
         info = make_info("arm_drivers/Feetech", 3, port=str(port.path))
         assert not FeetechHardware(info).on_configure()
@@ -373,13 +332,7 @@ def test_another_device_is_told(tmp_path: Path, make_info: Info, caplog: pytest.
         (errno.EIO, "/dev/arm is not a serial port"),
     ],
 )
-def test_a_port_that_may_not_be_opened_is_told(
-    code: int,
-    sentence: str,
-    make_info: Info,
-    monkeypatch: pytest.MonkeyPatch,
-    caplog: pytest.LogCaptureFixture,
-):
+def test_a_port_that_may_not_be_opened_is_told(code, sentence, make_info, monkeypatch, caplog):
     def refuse(*_: object, **__: object) -> None:
         raise serial.SerialException(code, "could not open port")
 
@@ -388,13 +341,11 @@ def test_a_port_that_may_not_be_opened_is_told(
     assert sentence in caplog.text
 
 
-def test_a_port_in_use_is_told(
-    active: FeetechHardware, feetech_info: Info, caplog: pytest.LogCaptureFixture
-):
+def test_a_port_in_use_is_told(active, feetech_info, caplog):
     assert not FeetechHardware(feetech_info()).on_configure()
     assert "is in use by another program" in caplog.text
 
 
-def test_a_command_of_velocity_is_refused(hardware: FeetechHardware):
+def test_a_command_of_velocity_is_refused(hardware):
     assert hardware.prepare_command_mode_switch(["j0/position"], [])
     assert not hardware.prepare_command_mode_switch(["j0/velocity"], [])

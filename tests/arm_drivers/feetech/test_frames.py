@@ -51,7 +51,7 @@ CLEAN = b"".join(reply(servo, data) for servo, data in TRUE.items())
         ),
     ],
 )
-def test_a_request_is_a_frame_with_its_checksum(frame: bytes, wanted: str):
+def test_a_request_is_a_frame_with_its_checksum(frame, wanted):
     assert frame == bytes.fromhex(wanted)
 
 
@@ -94,14 +94,12 @@ def test_replies_are_taken_with_their_alarms_but_not_that_the_torque_is_on():
         *("short", "long", "foreign", "damaged"),
     ],
 )
-def test_a_fault_costs_at_most_its_own_reply(stream: bytes, ids: set[int]):
+def test_a_fault_costs_at_most_its_own_reply(stream, ids):
     assert collected(stream) == {servo: TRUE[servo] for servo in ids}
 
 
 @given(st.binary(max_size=200), st.lists(st.integers(1, 9), max_size=40))
-def test_no_stream_of_bytes_has_a_wrong_value_or_costs_the_next_request(
-    noise: bytes, sizes: list[int]
-):
+def test_no_stream_of_bytes_has_a_wrong_value_or_costs_the_next_request(noise, sizes):
     collector = ReplyCollector(REQUEST, IDS, 2)
     stream = noise
     for size in sizes:

@@ -43,12 +43,12 @@ def test_angles_are_read_in_rad():
     ],
     ids=["clean", "noise", "header", "acknowledgement", "short", "without_end"],
 )
-def test_a_fault_before_a_reply_is_skipped(before: bytes):
+def test_a_fault_before_a_reply_is_skipped(before):
     assert reply_data(before + REPLY, MyCobotCommand.READ_ANGLES) == ANGLES
 
 
 @given(st.binary(max_size=200).filter(lambda noise: b"\xfe\xfe" not in noise))
-def test_noise_is_no_reply_and_does_not_cost_the_next_one(noise: bytes):
+def test_noise_is_no_reply_and_does_not_cost_the_next_one(noise):
     found = reply_data(noise + REPLY, MyCobotCommand.READ_ANGLES)
     assert reply_data(noise, MyCobotCommand.READ_ANGLES) is None
     assert found == ANGLES

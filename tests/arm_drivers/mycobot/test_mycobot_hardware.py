@@ -1,20 +1,17 @@
 """The plugin of the myCobot 280 against an emulated one."""
 
 import math
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 
-from arm_control import HardwareInfo, HardwareReturn
+from arm_control import HardwareReturn
 from arm_control.errors import HardwareInfoError
 from arm_drivers.mycobot.hardware import MyCobotHardware
 from arm_sim.bench.mycobot_arm import EmulatedMyCobot
 from arm_sim.bench.serial_device import EmulatedPort, ReplyFaults
-
-Run = Callable[..., HardwareReturn]
 
 
 @pytest.fixture
@@ -25,15 +22,13 @@ def cobot() -> EmulatedMyCobot:
 
 
 @pytest.fixture
-def cobot_port(tmp_path: Path, cobot: EmulatedMyCobot) -> Iterator[EmulatedPort]:
+def cobot_port(tmp_path, cobot) -> Iterator[EmulatedPort]:
     with EmulatedPort(cobot, tmp_path / "port") as plugged:
         yield plugged
 
 
 @pytest.fixture
-def hardware(
-    cobot_port: EmulatedPort, make_info: Callable[..., HardwareInfo]
-) -> Iterator[MyCobotHardware]:
+def hardware(cobot_port, make_info) -> Iterator[MyCobotHardware]:
     parameters = {"port": str(cobot_port.path), "reply_timeout": "0.1", "max_missed": "20"}
     made = MyCobotHardware(make_info("arm_drivers/MyCobot280", 6, baud="1000000", **parameters))
     yield made
@@ -41,33 +36,27 @@ def hardware(
 
 
 @pytest.fixture
-def active(hardware: MyCobotHardware) -> MyCobotHardware:
+def active(hardware) -> MyCobotHardware:
     assert hardware.on_configure()
     assert hardware.on_activate()
     return hardware
 
 
-def test_it_holds_the_measured_angles_when_it_is_activated(
-    active: MyCobotHardware, cobot: EmulatedMyCobot, run_until: Run
-):
+def test_it_holds_the_measured_angles_when_it_is_activated(active, cobot, run_until):
     assert active.states[3] == pytest.approx(math.radians(30.0))
     run_until(active, lambda: active.thread is not None and active.thread.exchanges > 5)
     assert cobot.angles == pytest.approx([0, 30, 0, 0, 0, 0])
     assert not cobot.queue_mode
 
 
-def test_it_follows_commands_within_the_arm_s_limits(
-    active: MyCobotHardware, cobot: EmulatedMyCobot, run_until: Run
-):
+def test_it_follows_commands_within_the_arm_s_limits(active, cobot, run_until):
     active.commands[0] = 3.0
     run_until(active, lambda: active.states[0] > math.radians(167.9))
     assert cobot.error == 0
 
 
 @pytest.mark.parametrize("kind", ["lost", "damaged", "late", "doubled", "short", "noise"])
-def test_faulty_replies_cost_nothing_but_their_values(
-    kind: str, active: MyCobotHardware, cobot_port: EmulatedPort, run_until: Run
-):
+def test_faulty_replies_cost_nothing_but_their_values(kind, active, cobot_port, run_until):
     thread = active.thread
     assert thread is not None
     # Without a checksum, a small error of a damaged byte passes; a jump does not.
@@ -83,12 +72,7 @@ def test_faulty_replies_cost_nothing_but_their_values(
     assert cobot_port.faults.counts[kind] > 0
 
 
-def test_a_collision_ends_it(
-    active: MyCobotHardware,
-    cobot: EmulatedMyCobot,
-    caplog: pytest.LogCaptureFixture,
-    run_until: Run,
-):
+def test_a_collision_ends_it(active, cobot, caplog, run_until):
     cobot.error = 17
     assert run_until(active) is HardwareReturn.ERROR
     assert "the myCobot reports a collision, error 17" in caplog.text
@@ -110,30 +94,24 @@ def _mute(cobot: Any) -> None:
     ],
 )
 def test_an_arm_that_is_not_fit_is_refused_in_one_sentence(
-    spoil: Callable[[EmulatedMyCobot], None],
-    sentence: str,
-    hardware: MyCobotHardware,
-    cobot: EmulatedMyCobot,
-    caplog: pytest.LogCaptureFixture,
+    spoil, sentence, hardware, cobot, caplog
 ):
     spoil(cobot)
     assert not hardware.on_configure()
     assert sentence in caplog.text
 
 
-def test_an_arm_that_does_not_power_on_is_told(
-    hardware: MyCobotHardware, cobot: EmulatedMyCobot, caplog: pytest.LogCaptureFixture
-):
+def test_an_arm_that_does_not_power_on_is_told(hardware, cobot, caplog):
     cobot.powered, cobot.power_fails = False, True
     assert hardware.on_configure()
     assert not hardware.on_activate()
     assert "does not power on: is its emergency stop pressed?" in caplog.text
 
 
-def test_another_number_of_joints_is_refused(make_info: Callable[..., HardwareInfo]):
+def test_another_number_of_joints_is_refused(make_info):
     with pytest.raises(HardwareInfoError, match=r"6 joints and perhaps a gripper; .* has 4"):
         MyCobotHardware(make_info("arm_drivers/MyCobot280", 4))
 
 
-def test_states_that_it_does_not_measure_are_not_made_up(active: MyCobotHardware):
+def test_states_that_it_does_not_measure_are_not_made_up(active):
     assert np.isnan(active.states[2])

@@ -14,7 +14,7 @@ TOTAL = 3_000_000_000
 
 
 @pytest.fixture
-def one_gpu(monkeypatch: pytest.MonkeyPatch) -> None:
+def one_gpu(monkeypatch) -> None:
     """Let Warp find one GPU."""
     device = SimpleNamespace(total_memory=TOTAL)
     found = SimpleNamespace(get_cuda_device_count=lambda: 1, get_device=lambda name: device)
@@ -23,7 +23,7 @@ def one_gpu(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("name", ["gpu", "cuda:x", "cuda:", "cuda:-1", "CUDA", ""])
-def test_a_name_that_is_no_device_is_a_sentence(name: str):
+def test_a_name_that_is_no_device_is_a_sentence(name):
     with pytest.raises(BatchError, match=f"no device '{name}'; there are host, cuda, cuda:0"):
         check_device(name)
 
@@ -36,7 +36,7 @@ def test_a_gpu_that_is_not_there_is_named_with_those_that_are():
         check_device("cuda:7")
 
 
-def test_a_batch_says_what_is_missing(monkeypatch: pytest.MonkeyPatch):
+def test_a_batch_says_what_is_missing(monkeypatch):
     sim = Simulation("arm", arguments={"camera": "none"})
     physics, hardware = sim.parts.physics, sim.parts.robot.hardware
     for module in ("warp", "mujoco_warp"):
@@ -65,6 +65,6 @@ def test_a_batch_says_what_is_missing(monkeypatch: pytest.MonkeyPatch):
         (ValueError("Dense is unsupported"), "cannot simulate this model: Dense is unsupported"),
     ],
 )
-def test_errors_of_the_device_are_sentences(error: Exception, sentence: str):
+def test_errors_of_the_device_are_sentences(error, sentence):
     with pytest.raises(BatchError, match=sentence), explained(400, "cuda"):
         raise error

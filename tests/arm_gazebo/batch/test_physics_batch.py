@@ -1,6 +1,5 @@
 """Copies of a simulation: each to the bit like the simulation alone."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -80,7 +79,7 @@ def commands(joints: int) -> np.ndarray:
     ids=["position", "velocity", "effort", "proportional", "mycobot"],
 )
 def test_each_copy_goes_through_the_states_of_the_library(
-    tmp_path: Path, robot: str, joints: tuple[str, ...], interface: str, options: dict[str, object]
+    tmp_path, robot, joints, interface, options
 ):
     sim = simulation(tmp_path, robot, joints, interface, **options)
     driven = [joint.name for joint in sim.parts.physics.servo.joints]
@@ -104,7 +103,7 @@ def test_each_copy_goes_through_the_states_of_the_library(
     sim.close()
 
 
-def test_copies_that_fell_asleep_go_on_as_the_library_does(tmp_path: Path):
+def test_copies_that_fell_asleep_go_on_as_the_library_does(tmp_path):
     sim = simulation(tmp_path, "arm", ARM, "position")
     batch = batch_of(sim, copies=2)
     restart(sim)
@@ -121,7 +120,7 @@ def test_copies_that_fell_asleep_go_on_as_the_library_does(tmp_path: Path):
 
 
 @pytest.mark.parametrize("make", [batch_of, serial_of])
-def test_a_copy_restarts_alone_and_repeats_its_run(tmp_path: Path, make: Callable[..., Copies]):
+def test_a_copy_restarts_alone_and_repeats_its_run(tmp_path, make):
     sim = simulation(tmp_path, "arm", ARM, "position")
     batch = make(sim, copies=2)
     goal = np.full((2, 4), 0.4)
@@ -135,7 +134,7 @@ def test_a_copy_restarts_alone_and_repeats_its_run(tmp_path: Path, make: Callabl
     sim.close()
 
 
-def test_links_are_where_the_library_says_and_looking_changes_nothing(tmp_path: Path):
+def test_links_are_where_the_library_says_and_looking_changes_nothing(tmp_path):
     sim = simulation(tmp_path, "arm", ARM, "position")
     looked, alone, serial = batch_of(sim, 2), batch_of(sim, 2), serial_of(sim, 2)
     restart(sim)
@@ -158,7 +157,7 @@ def test_links_are_where_the_library_says_and_looking_changes_nothing(tmp_path: 
         (np.full((2, 4), np.nan), "need finite values"),
     ],
 )
-def test_commands_that_are_none_are_refused(tmp_path: Path, values: np.ndarray, problem: str):
+def test_commands_that_are_none_are_refused(tmp_path, values, problem):
     sim = simulation(tmp_path, "arm", ARM, "position")
     for batch in (batch_of(sim, copies=2), serial_of(sim, copies=2)):
         with pytest.raises(BatchError, match=problem):
@@ -169,7 +168,7 @@ def test_commands_that_are_none_are_refused(tmp_path: Path, values: np.ndarray, 
 
 
 @pytest.mark.parametrize("periods", [0, 1])
-def test_a_copy_that_becomes_unstable_is_told(tmp_path: Path, periods: int):
+def test_a_copy_that_becomes_unstable_is_told(tmp_path, periods):
     sim = simulation(tmp_path, "arm", ARM, "effort")
     batch = batch_of(sim, copies=2)
     batch.advance(np.zeros((2, 4)), periods)
@@ -178,7 +177,7 @@ def test_a_copy_that_becomes_unstable_is_told(tmp_path: Path, periods: int):
     sim.close()
 
 
-def test_the_kind_of_batch_follows_from_the_number_of_copies(tmp_path: Path):
+def test_the_kind_of_batch_follows_from_the_number_of_copies(tmp_path):
     sim = simulation(tmp_path, "arm", ARM, "position")
     physics, hardware = sim.parts.physics, sim.parts.robot.hardware
     assert isinstance(make_copies(physics, hardware, SERIAL_COPIES), SerialBatch)

@@ -111,7 +111,7 @@ def bang_bang(acceleration: float, speed: float) -> float:
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_a_joint_alone_takes_at_most_twice_the_shortest_time(bench: Any, parts: Any, name: str):
+def test_a_joint_alone_takes_at_most_twice_the_shortest_time(bench, parts, name):
     run = bench(ROBOTS[name].urdf(parts), RATE_HZ)
     run.claim()
     simulation = run.simulation
@@ -140,7 +140,7 @@ def test_a_joint_alone_takes_at_most_twice_the_shortest_time(bench: Any, parts: 
 
 
 @pytest.fixture
-def law(parts: Any) -> Any:
+def law(parts):
     """Return model, tuning and law of a trunk with arms, and inertias and gravity in poses."""
     built = parts.build(ROBOTS["trunk, arms of 3"].urdf(parts))
     joints = [joint for joint in built.joints.values() if joint.actuator is not None]
@@ -163,7 +163,7 @@ def needs_of(random: np.random.Generator, shape: tuple[int, ...]) -> np.ndarray:
     return np.where(kinds == 0, -1.0, np.where(kinds == 1, 0.0, random.uniform(0.0, 2.0, shape)))
 
 
-def test_all_stops_together_leave_a_quarter_of_the_effort(law: Any):
+def test_all_stops_together_leave_a_quarter_of_the_effort(law):
     tuning, rule, inertias, gravities = law
     count = len(tuning.braking)
     floors, needs = FLOOR * tuning.braking, np.zeros((len(inertias), count))
@@ -177,7 +177,7 @@ def test_all_stops_together_leave_a_quarter_of_the_effort(law: Any):
     assert (parts * own > 1.5 * tuning.braking).mean() > 0.3
 
 
-def test_a_joint_that_starts_takes_nothing_from_one_that_moves(law: Any):
+def test_a_joint_that_starts_takes_nothing_from_one_that_moves(law):
     tuning, rule, inertias, gravities = law
     count = len(tuning.braking)
     floors, needs = FLOOR * tuning.braking, np.full((len(inertias), count), -1.0)
@@ -191,7 +191,7 @@ def test_a_joint_that_starts_takes_nothing_from_one_that_moves(law: Any):
     assert (together >= alone * (1 - 1e-9)).all()
 
 
-def test_many_states_have_the_bits_of_one(law: Any):
+def test_many_states_have_the_bits_of_one(law):
     tuning, rule, inertias, gravities = law
     needs = needs_of(np.random.default_rng(4), gravities.shape)
     efforts, floors = tuning.efforts.tolist(), (FLOOR * tuning.braking).tolist()
@@ -203,7 +203,7 @@ def test_many_states_have_the_bits_of_one(law: Any):
         assert rule.parts(inertia, one, floors, needs[row].tolist()) == many[row].tolist()
 
 
-def test_a_state_of_an_older_version_is_read(bench: Any, parts: Any):
+def test_a_state_of_an_older_version_is_read(bench, parts):
     run = bench(parts.arm())
     run.claim()
     run.command(0.5, 0, 0, 0)
@@ -216,7 +216,7 @@ def test_a_state_of_an_older_version_is_read(bench: Any, parts: Any):
     assert run.run(2.0)[-1] == pytest.approx([0.5, 0, 0, 0], abs=1e-3)
 
 
-def test_a_joint_that_others_slow_is_named_with_the_one_that_does(parts: Any):
+def test_a_joint_that_others_slow_is_named_with_the_one_that_does(parts):
     urdf = parts.robot(
         parts.link("base"),
         parts.link("trunk", 20.0, 0.4),

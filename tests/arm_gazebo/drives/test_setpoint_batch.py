@@ -27,13 +27,7 @@ bound = st.floats(0.01, 200.0)
     spare=st.floats(1.0, 10.0),
 )
 def test_approach_moves_as_one_set_point_does(
-    position: float,
-    velocity: float,
-    target: float,
-    target_velocity: float,
-    speed: float,
-    braking: float,
-    spare: float,
+    position, velocity, target, target_velocity, speed, braking, spare
 ):
     one = Setpoint(position, velocity)
     one.approach(target, target_velocity, speed, spare * braking, braking, PERIOD_S)
@@ -45,7 +39,7 @@ def test_approach_moves_as_one_set_point_does(
 
 
 @pytest.mark.parametrize("near_end", [0.0, 1e-5, 1e-3, 0.3])
-def test_a_whole_approach_has_the_same_bits(near_end: float):
+def test_a_whole_approach_has_the_same_bits(near_end):
     one = Setpoint(0.0)
     positions, velocities = np.zeros((1, 1)), np.zeros((1, 1))
     for _ in range(200):
@@ -66,7 +60,7 @@ def test_a_whole_approach_has_the_same_bits(near_end: float):
 
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.one_of(st.none(), st.floats(-1.0, 1.0)), max_size=40))
-def test_streams_turn_commands_into_targets_as_one_stream_does(commands: list[float | None]):
+def test_streams_turn_commands_into_targets_as_one_stream_does(commands):
     one, many = CommandStream(0.25, PERIOD_S), CommandStreams.at(np.full((2, 1), 0.25))
     last = 0.25
     for tick, command in enumerate(commands):

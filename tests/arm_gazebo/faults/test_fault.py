@@ -15,7 +15,7 @@ from arm_gazebo.faults.fault import Fault, FaultKind, read_fault
         ("slow_tick 0.02", Fault(FaultKind.SLOW_TICK, "", 0.02)),
     ],
 )
-def test_a_text_is_a_fault(text: str, fault: Fault):
+def test_a_text_is_a_fault(text, fault):
     assert read_fault(text) == fault
 
 
@@ -34,6 +34,6 @@ def test_a_text_is_a_fault(text: str, fault: Fault):
         ("slow_tick nan", "slow_tick needs a positive number, not nan"),
     ],
 )
-def test_another_text_gets_a_sentence(text: str, sentence: str):
+def test_another_text_gets_a_sentence(text, sentence):
     with pytest.raises(FaultError, match=sentence):
         read_fault(text)

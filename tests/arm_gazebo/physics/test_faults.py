@@ -20,7 +20,7 @@ def model() -> mujoco.MjModel:
 
 
 @pytest.fixture
-def faults(model: mujoco.MjModel) -> PhysicsFaults:
+def faults(model) -> PhysicsFaults:
     return PhysicsFaults(model, lambda name: 0)
 
 
@@ -33,7 +33,7 @@ def pushed(model: mujoco.MjModel) -> float:
     return float(data.qpos[0])
 
 
-def test_a_stalled_joint_does_not_move(model: mujoco.MjModel, faults: PhysicsFaults):
+def test_a_stalled_joint_does_not_move(model, faults):
     before = pushed(model)
     faults.stall("rail")
     assert abs(pushed(model)) < 1e-3 < before
@@ -42,7 +42,7 @@ def test_a_stalled_joint_does_not_move(model: mujoco.MjModel, faults: PhysicsFau
     assert pushed(model) == before
 
 
-def test_another_model_has_the_same_stalled_joint(model: mujoco.MjModel, faults: PhysicsFaults):
+def test_another_model_has_the_same_stalled_joint(model, faults):
     faults.stall("rail")
     other = mujoco.MjModel.from_xml_string(SLIDER.format(name="rail"))
     faults.rebind(other)
@@ -57,7 +57,7 @@ def applied(faults: PhysicsFaults, value: float, number: int = 0) -> list[float]
     return readings.tolist()
 
 
-def test_only_the_channels_of_that_name_are_wrong(faults: PhysicsFaults):
+def test_only_the_channels_of_that_name_are_wrong(faults):
     faults.distort("a", Distortion.NAN, 0.0, 0)
     assert list(map(isnan, applied(faults, 1.0))) == [True, True, False]
     faults.clear("a", Distortion.NAN)
@@ -65,7 +65,7 @@ def test_only_the_channels_of_that_name_are_wrong(faults: PhysicsFaults):
     assert list(map(isnan, applied(faults, 1.0))) == [False, True, False]
 
 
-def test_a_frozen_channel_keeps_the_first_reading_until_the_fault_ends(faults: PhysicsFaults):
+def test_a_frozen_channel_keeps_the_first_reading_until_the_fault_ends(faults):
     faults.distort("a/x", Distortion.FROZEN, 0.0, 0)
     assert applied(faults, 1.0)[0] == 1.0
     assert applied(faults, 2.0) == [1.0, 2.0, 2.0]
@@ -74,7 +74,7 @@ def test_a_frozen_channel_keeps_the_first_reading_until_the_fault_ends(faults: P
     assert applied(faults, 3.0)[0] == 3.0
 
 
-def test_noise_is_of_the_state_the_channel_and_the_seed(faults: PhysicsFaults):
+def test_noise_is_of_the_state_the_channel_and_the_seed(faults):
     faults.distort("a", Distortion.NOISY, 0.1, 5)
     first = applied(faults, 0.0, 1)
     assert first == applied(faults, 0.0, 1)

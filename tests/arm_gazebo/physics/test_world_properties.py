@@ -1,7 +1,5 @@
 """Changed properties leave the model as if the world had been built with them."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -19,7 +17,7 @@ DERIVED = ("body_subtreemass", "body_invweight0", "dof_invweight0", "dof_M0", "a
 
 
 @pytest.fixture
-def running(bench, parts, tmp_path: Path):
+def running(bench, parts, tmp_path):
     """Return a maker of simulations of a pendulum beside a thing with a lid."""
 
     def make(gravity: float = -9.81, mass: float = 1.0, lid: float = 0.5, friction: float = 1.0):

@@ -29,9 +29,7 @@ def hanging(parts: Any, mass_kg: float, arm_m: float, friction: float, effort: f
     ("mass_kg", "arm_m"), [(0.001, 0.01), (0.001, 0.1), (0.1, 0.1), (1.0, 0.3), (100.0, 1.0)]
 )
 @pytest.mark.parametrize("speed", [0.0, -3.0], ids=["at rest", "thrown"])
-def test_a_joint_rests_under_its_own_friction(
-    bench: Any, parts: Any, mass_kg: float, arm_m: float, speed: float
-):
+def test_a_joint_rests_under_its_own_friction(bench, parts, mass_kg, arm_m, speed):
     run = bench(hanging(parts, mass_kg, arm_m, mass_kg * G * arm_m / 0.9))
     run.claim("effort")
     run.command(0.0)
@@ -42,7 +40,7 @@ def test_a_joint_rests_under_its_own_friction(
     assert abs(run.state("velocity")[0]) < 2e-4
 
 
-def test_a_joint_that_nothing_drives_rests_too(bench: Any, parts: Any):
+def test_a_joint_that_nothing_drives_rests_too(bench, parts):
     limb = parts.joint("k", "bob", "limb", xyz="0.1 0 0", more='<dynamics friction="0.2"/>')
     urdf = hanging(parts, 1.0, 0.1, 20.0, 50.0).replace(
         "</robot>", parts.link("limb", 0.1, 0.02, "0.1 0 0") + limb + "</robot>"
@@ -53,7 +51,7 @@ def test_a_joint_that_nothing_drives_rests_too(bench: Any, parts: Any):
     assert abs(run.simulation.data.qpos[limb.qpos_address]) < 0.001
 
 
-def test_joints_that_stick_do_not_chatter(bench: Any, parts: Any):
+def test_joints_that_stick_do_not_chatter(bench, parts):
     """A thrown arm comes to rest for good, whatever its neighbours do."""
     arm = bench(parts.serial_arm(6, 5.0, 0.6, friction=0.6))
     arm.claim("effort")
@@ -71,7 +69,7 @@ def solver(run: Any) -> float | str:
 STICKS, YIELDS = 0.9999, "yields"
 
 
-def test_friction_sticks_unless_a_servo_holds_the_joint(bench: Any, parts: Any):
+def test_friction_sticks_unless_a_servo_holds_the_joint(bench, parts):
     run = bench(hanging(parts, 0.1, 0.1, 0.2, 5.0))
     assert solver(run) == YIELDS
     run.claim("effort")
@@ -80,11 +78,11 @@ def test_friction_sticks_unless_a_servo_holds_the_joint(bench: Any, parts: Any):
     assert solver(run) == YIELDS
 
 
-def test_friction_sticks_where_the_drive_cannot_overcome_it(bench: Any, parts: Any):
+def test_friction_sticks_where_the_drive_cannot_overcome_it(bench, parts):
     assert solver(bench(hanging(parts, 0.1, 0.1, 0.2, 0.1))) == STICKS
 
 
-def test_friction_of_a_follower_yields_with_its_leader(bench: Any, parts: Any):
+def test_friction_of_a_follower_yields_with_its_leader(bench, parts):
     mimic = '<mimic joint="j"/><dynamics friction="0.1"/>'
     urdf = hanging(parts, 0.1, 0.1, 0.2, 5.0).replace(
         "</robot>",
@@ -96,9 +94,7 @@ def test_friction_of_a_follower_yields_with_its_leader(bench: Any, parts: Any):
     assert run.simulation.model.dof_solimp[:, 0].tolist() == [STICKS, STICKS]
 
 
-def test_a_stalled_joint_stays_stalled_whatever_its_mode_and_is_free_in_the_last_one(
-    bench: Any, parts: Any
-):
+def test_a_stalled_joint_stays_stalled_whatever_its_mode_and_is_free_in_the_last_one(bench, parts):
     run = bench(hanging(parts, 0.1, 0.1, 0.2, 5.0))
     run.simulation.stall_joint("j")
     run.claim("effort")
@@ -108,7 +104,7 @@ def test_a_stalled_joint_stays_stalled_whatever_its_mode_and_is_free_in_the_last
     assert solver(run) == YIELDS
 
 
-def test_a_restored_state_has_the_friction_of_its_modes(bench: Any, parts: Any):
+def test_a_restored_state_has_the_friction_of_its_modes(bench, parts):
     run = bench(hanging(parts, 0.1, 0.1, 0.2, 5.0))
     held = run.simulation.save_state()["servo"]
     run.claim("effort")
@@ -119,7 +115,7 @@ def test_a_restored_state_has_the_friction_of_its_modes(bench: Any, parts: Any):
 @pytest.mark.parametrize("mass_kg", [0.2, 2.0, 20.0])
 @pytest.mark.parametrize("dynamics", ['friction="30"', 'friction="30" damping="30"'])
 def test_a_drive_without_an_effort_limit_is_sized_for_friction_and_damping(
-    bench: Any, parts: Any, mass_kg: float, dynamics: str
+    bench, parts, mass_kg, dynamics
 ):
     urdf = hanging(parts, mass_kg, 0.1, 0).replace('friction="0"', dynamics)
     run = bench(urdf)
@@ -136,7 +132,7 @@ def test_a_drive_without_an_effort_limit_is_sized_for_friction_and_damping(
     ("mass_kg", "effort", "speed"), [(0.015, 20, 0.2), (0.015, 70, 0.05), (0.01, 1000, 0.2)]
 )
 def test_a_small_sliding_gripper_with_friction_does_not_overshoot(
-    bench: Any, parts: Any, mass_kg: float, effort: float, speed: float, rate_hz: float
+    bench, parts, mass_kg, effort, speed, rate_hz
 ):
     """A light finger on a strong drive: MuJoCo's friction knows the finger, not the rotor."""
     limit = f'lower="0" upper="0.04" effort="{effort}" velocity="{speed}"'

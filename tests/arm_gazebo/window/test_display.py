@@ -2,7 +2,6 @@
 
 import socket
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
@@ -11,7 +10,7 @@ from arm_gazebo.window.display import check_display
 
 
 @pytest.fixture
-def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+def served(tmp_path, monkeypatch) -> Iterator[str]:
     """A display whose server listens, the only one there is."""
     prefix = tmp_path / "X"
     monkeypatch.setattr("arm_gazebo.window.display.X11_SOCKET", str(prefix))

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.workaround("local_profile")
 
 
 @pytest.fixture
-def profile(tmp_path: Path) -> Path:
+def profile(tmp_path) -> Path:
     """Return a profile that has a twin."""
     (tmp_path / "net_localhost.xml").touch()
     return tmp_path / "net.xml"
@@ -24,7 +24,7 @@ def environment(profile: Path | str, **more: str) -> dict[str, str]:
     return {profile_variable(): str(profile), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", **more}
 
 
-def test_localhost_is_left_to_the_other_profile(profile: Path) -> None:
+def test_localhost_is_left_to_the_other_profile(profile):
     environ = environment(profile, HOME="/home/me")
     use_local_profile(environ)
     assert environ == {
@@ -34,7 +34,7 @@ def test_localhost_is_left_to_the_other_profile(profile: Path) -> None:
     }
 
 
-def test_a_child_gets_back_what_there_was(profile: Path) -> None:
+def test_a_child_gets_back_what_there_was(profile):
     environ = environment(profile)
     use_local_profile(environ)
     use_general_profile(environ)
@@ -49,14 +49,14 @@ def test_a_child_gets_back_what_there_was(profile: Path) -> None:
         {"ROS_STATIC_PEERS": "192.0.2.7"},
     ],
 )
-def test_any_other_wish_is_rmws_to_fulfil(profile: Path, more: dict[str, str]) -> None:
+def test_any_other_wish_is_rmws_to_fulfil(profile, more):
     environ = environment(profile, **more)
     use_local_profile(environ)
     use_general_profile(environ)
     assert environ == environment(profile, **more)
 
 
-def test_a_profile_without_a_twin_stays(tmp_path: Path) -> None:
+def test_a_profile_without_a_twin_stays(tmp_path):
     for chosen in (tmp_path / "mine.xml", ""):
         environ = environment(chosen)
         use_local_profile(environ)

@@ -26,14 +26,14 @@ def make(folder: Path, name: str, content: bytes = b"", age_s: float = LEAST_AGE
 
 @pytest.mark.parametrize("content", [b"", b"\x02", bytes(64), BEGUN])
 @pytest.mark.parametrize("name", ["fastrtps_port7661", "fastdds_port7661"])
-def test_a_port_that_was_never_finished_goes(tmp_path: Path, name: str, content: bytes) -> None:
+def test_a_port_that_was_never_finished_goes(tmp_path, name, content):
     port = make(tmp_path, name, content)
     assert remove_torn_ports(str(tmp_path)) == [name]
     assert not port.exists()
 
 
 @pytest.mark.parametrize("content", [b"", b"\x02", bytes(64), BEGUN])
-def test_who_waits_for_it_reads_that_it_is_corrupted(tmp_path: Path, content: bytes) -> None:
+def test_who_waits_for_it_reads_that_it_is_corrupted(tmp_path, content):
     with make(tmp_path, "fastrtps_port7661", content).open("rb") as held:
         remove_torn_ports(str(tmp_path))
         assert held.read(4) == b"\x03\0\0\0"
@@ -49,11 +49,11 @@ def test_who_waits_for_it_reads_that_it_is_corrupted(tmp_path: Path, content: by
         ("somebody_elses", b"", 1000.0),
     ],
 )
-def test_everything_else_stays(tmp_path: Path, name: str, content: bytes, age_s: float) -> None:
+def test_everything_else_stays(tmp_path, name, content, age_s):
     path = make(tmp_path, name, content, age_s)
     assert remove_torn_ports(str(tmp_path)) == []
     assert path.exists()
 
 
-def test_a_missing_folder_is_not_an_error(tmp_path: Path) -> None:
+def test_a_missing_folder_is_not_an_error(tmp_path):
     assert remove_torn_ports(str(tmp_path / "none")) == []

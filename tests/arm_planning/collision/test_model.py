@@ -58,7 +58,7 @@ def test_links_collide_with_each_other():
 
 
 @pytest.mark.parametrize("roll", [0.0, 0.5, 1.0])
-def test_a_capsule_through_a_board_collides(roll: float):
+def test_a_capsule_through_a_board_collides(roll):
     # MuJoCo finds no contact of a capsule with a box if both of its ends are outside.
     rod = collision("<capsule radius='0.02' length='0.3'/>")
     urdf = robot(

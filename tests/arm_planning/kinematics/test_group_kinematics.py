@@ -95,7 +95,7 @@ def test_a_group_that_does_not_exist_is_named():
         ("kinematics_solver_timeout", True),
     ],
 )
-def test_a_value_of_the_wrong_kind_is_refused(name: str, value: object):
+def test_a_value_of_the_wrong_kind_is_refused(name, value):
     with pytest.raises(PlanningError, match=f"robot_description_kinematics.arm.{name} is"):
         kinematics_settings({f"arm.{name}": value}, MODEL, pytest.fail)
 

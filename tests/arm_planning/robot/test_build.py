@@ -54,7 +54,7 @@ def test_joints_that_follow_each_other_are_a_chain_whatever_their_order():
 @pytest.mark.parametrize(
     "joints", [("shoulder", "wrist"), ("elbow", "pan"), ("grip", "follow"), ()]
 )
-def test_other_joints_are_no_chain(joints: tuple[str, ...]):
+def test_other_joints_are_no_chain(joints):
     parts = "".join(f"<joint name='{name}'/>" for name in joints)
     group = model(f"<group name='g'>{parts}</group>").group("g")
     assert (group.base, group.tip) == ("", "")
@@ -94,9 +94,7 @@ def test_mimic_joints_are_not_active():
     ("kind", "child", "frame"),
     [("floating", "base", "odom"), ("fixed", "base", "base"), ("planar", "hand", "base")],
 )
-def test_only_a_virtual_joint_that_moves_the_root_gives_the_frame(
-    kind: str, child: str, frame: str
-):
+def test_only_a_virtual_joint_that_moves_the_root_gives_the_frame(kind, child, frame):
     joints = f"<virtual_joint name='v' type='{kind}' parent_frame='odom' child_link='{child}'/>"
     assert model(joints).frame == frame
 
@@ -115,7 +113,7 @@ def test_a_turning_joint_without_limits_is_continuous():
     assert group.limits[1].upper == math.inf
 
 
-def test_limits_of_joints_that_do_not_exist_are_a_warning(capsys: pytest.CaptureFixture[str]):
+def test_limits_of_joints_that_do_not_exist_are_a_warning(capsys):
     model(limits=JointLimitSettings({"knee": GivenLimits()}))
     sentence = "joint_limits are given for joints that the robot does not have: knee\n"
     assert sentence in capsys.readouterr().out

@@ -158,7 +158,7 @@ def test_a_robot_without_joints_has_no_groups():
 
 
 @pytest.mark.parametrize("kind", ["floating", "planar"])
-def test_joints_that_are_not_planned_are_no_part_of_groups(kind: str):
+def test_joints_that_are_not_planned_are_no_part_of_groups(kind):
     parts = [link("cart"), joint("drive", "world", "cart", kind=kind, limits=None)]
     model = read(link("world"), *parts, *serial("j", 3, "cart"))[2]
     assert model.group("arm").joints == ("j1", "j2", "j3")
@@ -186,7 +186,7 @@ def trees(draw: st.DrawFn) -> str:
 
 
 @given(trees())
-def test_any_robot_has_groups_that_can_be_planned(text: str):
+def test_any_robot_has_groups_that_can_be_planned(text):
     description = parse_urdf(text)
     srdf = default_srdf(description)
     assert parse_srdf(srdf_text(srdf), description, remark=pytest.fail) == srdf

@@ -106,7 +106,7 @@ def test_an_unknown_key_is_a_warning():
         ("has_jerk_limits: 1", "has_jerk_limits is 1; it is true or false"),
     ],
 )
-def test_what_is_not_a_limit_is_refused(text: str, sentence: str):
+def test_what_is_not_a_limit_is_refused(text, sentence):
     with pytest.raises(PlanningError) as caught:
         read_joint_limits(f"joint_limits: {{j: {{{text}}}}}", "limits.yaml", pytest.fail)
     assert str(caught.value) == f"limits.yaml: joint_limits.j.{sentence}"
@@ -118,7 +118,7 @@ def test_a_scaling_factor_is_a_fraction():
 
 
 @pytest.mark.parametrize("text", ["a: [", "- 1"])
-def test_a_file_that_is_not_a_mapping_is_refused(text: str):
+def test_a_file_that_is_not_a_mapping_is_refused(text):
     with pytest.raises(PlanningError, match=r"^limits\.yaml is not "):
         read_joint_limits(text, "limits.yaml", pytest.fail)
 

@@ -153,7 +153,7 @@ def test_another_robots_name_is_a_warning():
         ),
     ],
 )
-def test_what_does_not_exist_is_left_out_with_a_warning(line: str, remark: str):
+def test_what_does_not_exist_is_left_out_with_a_warning(line, remark):
     assert read(line)[1] == [f"line 2: {remark}"]
 
 
@@ -203,7 +203,7 @@ def test_one_warning_names_all_links_of_pairs_that_the_robot_lacks():
         ),
     ],
 )
-def test_what_is_written_wrongly_is_refused(lines: list[str], sentence: str):
+def test_what_is_written_wrongly_is_refused(lines, sentence):
     assert refusal(*lines) == sentence
 
 
@@ -218,7 +218,7 @@ def test_what_is_written_wrongly_is_refused(lines: list[str], sentence: str):
         ),
     ],
 )
-def test_a_text_that_is_not_an_srdf_is_refused(text: str, sentence: str):
+def test_a_text_that_is_not_an_srdf_is_refused(text, sentence):
     with pytest.raises(SrdfError) as caught:
         parse_srdf(text, ARM, "arm.srdf")
     assert str(caught.value) == sentence
@@ -239,5 +239,5 @@ def test_disabled_pairs_win_over_enabled_ones_and_those_over_links_that_may_touc
 
 
 @given(SRDFS)
-def test_what_is_written_is_read_again(srdf: Srdf):
+def test_what_is_written_is_read_again(srdf):
     assert parse_srdf(srdf_text(srdf), ROBOT, remark=lambda _: None) == srdf

@@ -50,7 +50,7 @@ def answer_of(kind: Any, serve: Callable[[Any, Any], Any], limit: BusyLimit | No
         (GetMotionSequence, "response"),
     ],
 )
-def test_a_fault_is_answered_with_failure_and_its_reason(kind: Any, holder: str):
+def test_a_fault_is_answered_with_failure_and_its_reason(kind, holder):
     answer = answer_of(kind, breaks)
     code = (getattr(answer, holder) if holder else answer).error_code
     assert code.val == FAILURE

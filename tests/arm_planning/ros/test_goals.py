@@ -73,7 +73,7 @@ class Server:
 
 
 @pytest.fixture
-def server(monkeypatch: pytest.MonkeyPatch) -> Server:
+def server(monkeypatch) -> Server:
     return Server(monkeypatch)
 
 
@@ -84,7 +84,7 @@ def accepted(server: Server, count: int) -> list[FakeHandle]:
     return handles
 
 
-def test_a_fault_ends_a_goal_with_failure_and_its_reason(server: Server):
+def test_a_fault_ends_a_goal_with_failure_and_its_reason(server):
     def breaks(_goal: ServedGoal, _result: Any) -> ExecutionOutcome:
         raise RuntimeError("no memory")
 
@@ -99,7 +99,7 @@ def test_a_fault_ends_a_goal_with_failure_and_its_reason(server: Server):
     assert handle.states[-1] == "IDLE"
 
 
-def test_goals_begin_one_after_the_other_after_faults_too(server: Server):
+def test_goals_begin_one_after_the_other_after_faults_too(server):
     server.serve = lambda _goal, _result: 1 // 0
     handles = accepted(server, 3)
     assert [handle.begun for handle in handles] == [1, 0, 0]
@@ -107,7 +107,7 @@ def test_goals_begin_one_after_the_other_after_faults_too(server: Server):
     assert [handle.begun for handle in handles] == [1, 1, 0]
 
 
-def test_a_waiting_goal_that_is_cancelled_ends_while_another_one_runs(server: Server):
+def test_a_waiting_goal_that_is_cancelled_ends_while_another_one_runs(server):
     first, second, third = accepted(server, 3)
     server.cancel(second)
     assert second.begun == 1
@@ -118,7 +118,7 @@ def test_a_waiting_goal_that_is_cancelled_ends_while_another_one_runs(server: Se
     assert third.begun == 1
 
 
-def test_a_goal_learns_while_it_is_served_that_it_is_cancelled(server: Server):
+def test_a_goal_learns_while_it_is_served_that_it_is_cancelled(server):
     def plan(goal: ServedGoal, _result: Any) -> ExecutionOutcome:
         server.cancel(goal.handle)
         assert goal.is_interrupted()
@@ -130,7 +130,7 @@ def test_a_goal_learns_while_it_is_served_that_it_is_cancelled(server: Server):
     assert handle.status == "canceled"
 
 
-def test_a_stop_interrupts_only_whose_turn_it_is(server: Server):
+def test_a_stop_interrupts_only_whose_turn_it_is(server):
     def move(goal: ServedGoal, _result: Any) -> ExecutionOutcome:
         if goal.handle is first:
             server.turns.stop()
@@ -143,7 +143,7 @@ def test_a_stop_interrupts_only_whose_turn_it_is(server: Server):
     assert server.execute(second).error_code.val == MoveItErrorCode.SUCCESS
 
 
-def test_a_cancel_that_comes_before_the_goal_begins_is_not_lost(server: Server):
+def test_a_cancel_that_comes_before_the_goal_begins_is_not_lost(server):
     handle = FakeHandle(0)
     server.cancel(handle)
     server.accept(handle)
@@ -151,7 +151,7 @@ def test_a_cancel_that_comes_before_the_goal_begins_is_not_lost(server: Server):
 
 
 @pytest.mark.parametrize("duration_s", [float("nan"), -1.0, 0.0])
-def test_a_goal_waits_for_no_duration_that_is_none(duration_s: float):
+def test_a_goal_waits_for_no_duration_that_is_none(duration_s):
     goal = ServedGoal(FakeHandle(0), MoveGroup.Feedback)
     goal.wait(duration_s)
     assert not goal.is_interrupted()

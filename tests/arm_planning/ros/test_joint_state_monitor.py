@@ -99,14 +99,14 @@ class Robot:
 
 
 @pytest.fixture
-def robot(monkeypatch: pytest.MonkeyPatch) -> Robot:
+def robot(monkeypatch) -> Robot:
     made = Robot()
     monkeypatch.setattr(joint_state_monitor, "time", made)
     return made
 
 
 @pytest.fixture
-def monitor(robot: Robot) -> JointStateMonitor:
+def monitor(robot) -> JointStateMonitor:
     """One that has heard a state."""
     node: Any = robot
     made = JointStateMonitor(node, planar_model())
@@ -115,9 +115,7 @@ def monitor(robot: Robot) -> JointStateMonitor:
     return made
 
 
-def test_while_time_stands_still_the_last_state_is_the_present_one(
-    robot: Robot, monitor: JointStateMonitor
-):
+def test_while_time_stands_still_the_last_state_is_the_present_one(robot, monitor):
     robot.ticks = False
     robot.wall_s += 10.0
     assert monitor.wait_for_fresh(TIMEOUT_S) == ""
@@ -130,7 +128,7 @@ def test_while_time_stands_still_the_last_state_is_the_present_one(
     assert robot.wall_s == before_s
 
 
-def test_states_that_stop_while_time_goes_on_are_old(robot: Robot, monitor: JointStateMonitor):
+def test_states_that_stop_while_time_goes_on_are_old(robot, monitor):
     robot.states = False
     robot.sleep(0.1)
     assert "joint_states stopped 1.1 s ago" in monitor.wait_for_fresh(TIMEOUT_S)
@@ -139,7 +137,7 @@ def test_states_that_stop_while_time_goes_on_are_old(robot: Robot, monitor: Join
 
 
 @pytest.mark.parametrize("gone", ["joint_states", "/clock"])
-def test_without_its_publisher_a_state_is_old(robot: Robot, monitor: JointStateMonitor, gone: str):
+def test_without_its_publisher_a_state_is_old(robot, monitor, gone):
     robot.ticks = False
     robot.wall_s += 10.0
     assert monitor.wait_for_fresh(TIMEOUT_S) == ""
@@ -147,9 +145,7 @@ def test_without_its_publisher_a_state_is_old(robot: Robot, monitor: JointStateM
     assert "joint_states stopped" in monitor.wait_for_fresh(TIMEOUT_S)
 
 
-def test_a_state_that_a_busy_machine_reads_late_is_fresh(
-    robot: Robot, monitor: JointStateMonitor, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_state_that_a_busy_machine_reads_late_is_fresh(robot, monitor, monkeypatch):
     def sleep(duration_s: float) -> None:
         robot.tick(duration_s)
         robot.wall_s += 0.2
@@ -160,7 +156,7 @@ def test_a_state_that_a_busy_machine_reads_late_is_fresh(
     assert monitor.wait_for_fresh(TIMEOUT_S) == ""
 
 
-def test_without_simulation_time_a_state_gets_old(robot: Robot, monitor: JointStateMonitor):
+def test_without_simulation_time_a_state_gets_old(robot, monitor):
     robot.ticks = robot.uses_sim_time = False
     robot.wall_s += 10.0
     assert "joint_states stopped" in monitor.wait_for_fresh(TIMEOUT_S)

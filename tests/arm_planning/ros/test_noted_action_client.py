@@ -15,9 +15,7 @@ TIMEOUT_S = 60.0
 @pytest.mark.parametrize(
     "request_of", ["send_goal_async", "_cancel_goal_async", "_get_result_async"]
 )
-def test_an_answer_waits_until_its_request_is_noted(
-    monkeypatch: pytest.MonkeyPatch, request_of: str
-):
+def test_an_answer_waits_until_its_request_is_noted(monkeypatch, request_of):
     sent, may_note, answering = threading.Event(), threading.Event(), threading.Event()
     order: list[str] = []
 

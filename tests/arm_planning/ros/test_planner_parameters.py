@@ -41,21 +41,21 @@ def services() -> Services:
     return Services()
 
 
-def test_what_is_set_is_told_and_acts(services: Services):
+def test_what_is_set_is_told_and_acts(services):
     assert services.get(pipeline_id="ompl", planner_config=RRT_CONNECT) == {"range": "0"}
     services.set(planner_config=RRT_CONNECT, values={"range": "0.5"})
     assert services.get(planner_config="RRTConnect", group="arm") == {"range": "0.5"}
     assert services.parameters.of("", "arm") == {"range": 0.5}
 
 
-def test_what_is_set_for_a_group_goes_before(services: Services):
+def test_what_is_set_for_a_group_goes_before(services):
     services.set(planner_config=RRT_CONNECT, values={"range": "0.5"})
     services.set(planner_config=f"arm[{RRT_CONNECT}]", group="arm", values={"range": "0.2"})
     assert services.parameters.of("RRTConnect", "arm") == {"range": 0.2}
     assert services.parameters.of("RRTConnect", "hand") == {"range": 0.5}
 
 
-def test_replacing_gives_the_others_their_defaults_again(services: Services):
+def test_replacing_gives_the_others_their_defaults_again(services):
     services.set(values={"range": "0.5"})
     services.set(values={}, replace=True)
     assert services.parameters.of("", "") == {}
@@ -71,9 +71,7 @@ def test_replacing_gives_the_others_their_defaults_again(services: Services):
         ({"planner_config": "Dijkstra"}, "no planner 'Dijkstra'"),
     ],
 )
-def test_what_cannot_be_set_is_logged_and_nothing_is_set(
-    services: Services, caplog: pytest.LogCaptureFixture, fields: dict[str, Any], sentence: str
-):
+def test_what_cannot_be_set_is_logged_and_nothing_is_set(services, caplog, fields, sentence):
     services.set(**fields)
     assert sentence in caplog.text
     assert services.parameters.of("", "arm") == {}

@@ -46,27 +46,27 @@ def monitor() -> Monitor:
 
 
 @pytest.fixture
-def session(monitor: Monitor) -> PlanningSession:
+def session(monitor) -> PlanningSession:
     setup = PlanningSetup(
         planar_model(), EMPTY, "", MeshPieces(), CartesianLimits(), 0, in_world=None
     )
     return PlanningSession(setup, monitor)
 
 
-def test_what_came_while_a_plan_was_made_blocks_it(session: PlanningSession, monitor: Monitor):
+def test_what_came_while_a_plan_was_made_blocks_it(session, monitor):
     with session.planner() as planner:
         trajectory = planner.move("arm", {"shoulder": 1.5, "elbow": 0.0})
     monitor.scene = replace(EMPTY, objects={"box": BOX})
     assert "box" in session.watch(trajectory, EMPTY)(0.0)
 
 
-def test_a_scene_that_stays_as_it_was_blocks_nothing(session: PlanningSession, monitor: Monitor):
+def test_a_scene_that_stays_as_it_was_blocks_nothing(session, monitor):
     with session.planner() as planner:
         trajectory = planner.move("arm", {"shoulder": 1.5, "elbow": 0.0})
     assert session.watch(trajectory, monitor.scene)(0.0) == ""
 
 
-def test_a_plan_from_an_old_state_says_so(session: PlanningSession, monitor: Monitor):
+def test_a_plan_from_an_old_state_says_so(session, monitor):
     monitor.problem = "joint_states stopped 3.0 s ago"
     goal = Constraints(joint_constraints=[JointConstraint(joint_name="shoulder", position=1.0)])
     response = session.plan(MotionPlanRequest(group_name="arm", goal_constraints=[goal]))

@@ -19,9 +19,7 @@ SHIFTED = PlacedShape(CUBE.shape, at(z=1))
         (at(1), (SHIFTED,), 1.0),
     ],
 )
-def test_an_objects_pose_stays_its_own(
-    pose: RigidTransform, shapes: tuple[PlacedShape, ...], w: float
-):
+def test_an_objects_pose_stays_its_own(pose, shapes, w):
     message = object_message(CollisionObject("box", pose, shapes), "world")
     assert message.pose.orientation.w == w
     assert message.pose.position.x == pose.position[0]

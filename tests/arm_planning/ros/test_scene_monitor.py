@@ -51,11 +51,11 @@ def objects_of(markers: list[Marker], world: RigidTransform) -> dict[str, Collis
     return objects_of_solids(solids_of(markers), world)
 
 
-def test_meshes_that_can_be_used_stay(before: PlanningScene):
+def test_meshes_that_can_be_used_stay(before):
     assert without_unusable(MODEL, EMPTY, before, MeshPieces()) == (before, [])
 
 
-def test_of_a_change_only_what_cannot_be_used_is_left_out(before: PlanningScene):
+def test_of_a_change_only_what_cannot_be_used_is_left_out(before):
     other = thing("other", CORNERS * 2.0)
     after = replace(before, objects={"good": GOOD, "bad": BAD, "other": other})
     kept, (problem,) = without_unusable(MODEL, before, after, MeshPieces())
@@ -63,14 +63,14 @@ def test_of_a_change_only_what_cannot_be_used_is_left_out(before: PlanningScene)
     assert "bad" in str(problem)
 
 
-def test_an_object_whose_new_mesh_cannot_be_used_keeps_the_one_it_had(before: PlanningScene):
+def test_an_object_whose_new_mesh_cannot_be_used_keeps_the_one_it_had(before):
     after = replace(before, objects={"good": replace(BAD, id="good")})
     kept, problems = without_unusable(MODEL, before, after, MeshPieces())
     assert kept.objects == {"good": GOOD}
     assert len(problems) == 1
 
 
-def test_an_attached_mesh_that_cannot_be_used_is_left_out(before: PlanningScene):
+def test_an_attached_mesh_that_cannot_be_used_is_left_out(before):
     after = replace(before, attached={"bad": AttachedBody(BAD, "tip")})
     kept, problems = without_unusable(MODEL, before, after, MeshPieces())
     assert not kept.attached

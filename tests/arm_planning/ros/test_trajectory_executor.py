@@ -94,7 +94,7 @@ class States:
 
 
 @pytest.fixture
-def controller(monkeypatch: pytest.MonkeyPatch) -> Controller:
+def controller(monkeypatch) -> Controller:
     made = Controller()
     monkeypatch.setattr(trajectory_executor, "NotedActionClient", lambda *_, **__: made)
     return made
@@ -106,11 +106,11 @@ def states() -> States:
 
 
 @pytest.fixture
-def manager(states: States) -> ExecutionManager:
+def manager(states) -> ExecutionManager:
     return ExecutionManager(None, states, lambda: [ARM], ExecutionSettings())
 
 
-def test_an_error_of_the_watch_stops_the_robot(manager: ExecutionManager, controller: Controller):
+def test_an_error_of_the_watch_stops_the_robot(manager, controller):
     def watch(_elapsed_s: float) -> str:
         raise ValueError("the scene cannot be read")
 
@@ -119,7 +119,7 @@ def test_an_error_of_the_watch_stops_the_robot(manager: ExecutionManager, contro
     assert controller.cancels == 1
 
 
-def test_after_an_error_the_next_motion_runs(manager: ExecutionManager, controller: Controller):
+def test_after_an_error_the_next_motion_runs(manager, controller):
     def watch(_elapsed_s: float) -> str:
         controller.end(GoalStatus.STATUS_SUCCEEDED)
         raise ValueError("no scene")
@@ -129,49 +129,41 @@ def test_after_an_error_the_next_motion_runs(manager: ExecutionManager, controll
     assert manager.execute(MOTION).code is MoveItErrorCode.SUCCESS
 
 
-def test_what_blocks_the_way_stops_the_robot(manager: ExecutionManager, controller: Controller):
+def test_what_blocks_the_way_stops_the_robot(manager, controller):
     outcome = manager.execute(MOTION, (), lambda _: "box with link2")
     assert outcome.code is MoveItErrorCode.MOTION_PLAN_INVALIDATED_BY_ENVIRONMENT_CHANGE
     assert outcome.message == "the way ahead is no longer free: box with link2"
     assert controller.cancels == 1
 
 
-def test_a_wish_to_cancel_that_is_lost_is_sent_again(
-    manager: ExecutionManager, controller: Controller
-):
+def test_a_wish_to_cancel_that_is_lost_is_sent_again(manager, controller):
     controller.lost_cancels = 1
     outcome = manager.execute(MOTION, (), lambda _: "box")
     assert controller.cancels == 2
     assert "may still move" not in outcome.message
 
 
-def test_a_controller_that_does_not_stop_is_named(
-    manager: ExecutionManager, controller: Controller, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_controller_that_does_not_stop_is_named(manager, controller, monkeypatch):
     monkeypatch.setattr(trajectory_executor, "STOP_TIMEOUT_S", 0.02)
     controller.lost_cancels = 1000
     outcome = manager.execute(MOTION, (), lambda _: "box")
     assert "arm_controller did not say within 0.02 s that it stopped" in outcome.message
 
 
-def test_an_interrupted_motion_is_stopped(manager: ExecutionManager, controller: Controller):
+def test_an_interrupted_motion_is_stopped(manager, controller):
     interrupted = iter([False, False, True])
     outcome = manager.execute(MOTION, (), None, lambda: next(interrupted))
     assert outcome.code is MoveItErrorCode.PREEMPTED
     assert controller.cancels == 1
 
 
-def test_what_is_interrupted_before_it_begins_does_not_move(
-    manager: ExecutionManager, controller: Controller
-):
+def test_what_is_interrupted_before_it_begins_does_not_move(manager, controller):
     outcome = manager.execute(MOTION, (), None, lambda: True)
     assert outcome.code is MoveItErrorCode.PREEMPTED
     assert controller.cancels == 0
 
 
-def test_at_the_end_the_robot_stops_and_no_other_motion_begins(
-    manager: ExecutionManager, controller: Controller
-):
+def test_at_the_end_the_robot_stops_and_no_other_motion_begins(manager, controller):
     ending = threading.Thread(target=manager.end)
 
     def watch(_elapsed_s: float) -> str:
@@ -186,9 +178,7 @@ def test_at_the_end_the_robot_stops_and_no_other_motion_begins(
     assert manager.execute(MOTION).code is MoveItErrorCode.PREEMPTED
 
 
-def test_the_time_of_a_motion_counts_from_when_its_controller_takes_it(
-    manager: ExecutionManager, controller: Controller, states: States
-):
+def test_the_time_of_a_motion_counts_from_when_its_controller_takes_it(manager, controller, states):
     controller.answer = Answer(is_done=False)
     elapsed: list[float] = []
 
@@ -207,9 +197,7 @@ def test_the_time_of_a_motion_counts_from_when_its_controller_takes_it(
     assert elapsed == [0.0, 0.0, 1.0]
 
 
-def test_the_time_of_a_motion_goes_on_when_the_clock_is_set_back(
-    manager: ExecutionManager, controller: Controller, states: States
-):
+def test_the_time_of_a_motion_goes_on_when_the_clock_is_set_back(manager, controller, states):
     # The fifth is a snapshot with this motion: the motion goes back, too.
     stamps = iter([100.2, 0.05, 0.15, 0.1, 0.6])
     elapsed: list[float] = []
@@ -227,9 +215,7 @@ def test_the_time_of_a_motion_goes_on_when_the_clock_is_set_back(
     assert elapsed == pytest.approx([0.0, 0.2, 0.2, 0.3, 0.25, 0.75])
 
 
-def test_a_motion_that_takes_too_long_is_stopped(
-    manager: ExecutionManager, controller: Controller, states: States
-):
+def test_a_motion_that_takes_too_long_is_stopped(manager, controller, states):
     def watch(_elapsed_s: float) -> str:
         states.stamp_s, states.speed = 10.0, 0.1
         return ""
@@ -240,7 +226,7 @@ def test_a_motion_that_takes_too_long_is_stopped(
 
 
 def test_a_robot_that_stands_still_may_have_arrived_though_its_controller_is_late_to_say_so(
-    manager: ExecutionManager, controller: Controller, states: States
+    manager, controller, states
 ):
     looks: list[float] = []
 
@@ -255,12 +241,7 @@ def test_a_robot_that_stands_still_may_have_arrived_though_its_controller_is_lat
     assert looks == [0.0, 10.0, 10.0]
 
 
-def test_a_robot_that_never_arrives_is_not_waited_for(
-    manager: ExecutionManager,
-    controller: Controller,
-    states: States,
-    monkeypatch: pytest.MonkeyPatch,
-):
+def test_a_robot_that_never_arrives_is_not_waited_for(manager, controller, states, monkeypatch):
     monkeypatch.setattr(trajectory_executor, "ANSWER_TIMEOUT_S", 0.02)
 
     def watch(_elapsed_s: float) -> str:
@@ -270,7 +251,7 @@ def test_a_robot_that_never_arrives_is_not_waited_for(
     assert manager.execute(MOTION, (), watch).code is MoveItErrorCode.TIMED_OUT
 
 
-def test_a_refused_part_of_a_controllers_joints_is_named(controller: Controller, states: States):
+def test_a_refused_part_of_a_controllers_joints_is_named(controller, states):
     both = replace(ARM, joints=("a", "b"))
     manager: Any = ExecutionManager(None, states, lambda: [both], ExecutionSettings())
     controller.accepted = False
@@ -279,7 +260,7 @@ def test_a_refused_part_of_a_controllers_joints_is_named(controller: Controller,
 
 @pytest.mark.parametrize(("error_code", "is_advised"), [(-5, True), (-4, True), (-1, False)])
 def test_a_robot_that_something_holds_up_may_touch_what_the_scene_lacks(
-    manager: ExecutionManager, controller: Controller, error_code: int, is_advised: bool
+    manager, controller, error_code, is_advised
 ):
     controller.end(GoalStatus.STATUS_ABORTED, error_code=error_code, error_string="j rests")
     outcome = manager.execute(MOTION)
@@ -288,7 +269,7 @@ def test_a_robot_that_something_holds_up_may_touch_what_the_scene_lacks(
     assert ("the floor, that the planning scene lacks" in outcome.message) is is_advised
 
 
-def test_a_refused_motion_names_the_controller(manager: ExecutionManager, controller: Controller):
+def test_a_refused_motion_names_the_controller(manager, controller):
     controller.accepted = False
     outcome = manager.execute(MOTION)
     assert outcome.code is MoveItErrorCode.CONTROL_FAILED

@@ -63,7 +63,7 @@ def test_appended_shapes_and_touch_links_join_those_before():
 
 
 @pytest.mark.parametrize("change", [let_go("box"), let_go("box", "hand"), let_go(link="hand")])
-def test_a_detached_object_is_in_the_world_where_the_hand_left_it(change: AttachedChange):
+def test_a_detached_object_is_in_the_world_where_the_hand_left_it(change):
     assert changed(HELD, change) == WORLD
 
 
@@ -127,9 +127,7 @@ def test_detaching_without_names_detaches_all():
         ),
     ],
 )
-def test_what_is_not_possible_is_refused(
-    scene: PlanningScene, change: AttachedChange, code: MoveItErrorCode, sentence: str
-):
+def test_what_is_not_possible_is_refused(scene, change, code, sentence):
     with pytest.raises(PlanningError) as caught:
         changed(scene, change)
     assert (caught.value.code, str(caught.value)) == (code, sentence)

@@ -10,7 +10,6 @@ from robots import joint, link, robot
 from arm_description import forward_kinematics
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.errors import MoveItErrorCode, PlanningError
-from arm_planning.robot.model import PlanningModel
 from arm_planning.scene.frames import LinkPoses, frame_pose
 from arm_planning.scene.objects import AttachedBody, CollisionObject
 
@@ -41,9 +40,7 @@ FULL = replace(
     ],
     ids=["slider", "with_mimic"],
 )
-def test_links_are_where_forward_kinematics_puts_them(
-    model: PlanningModel, positions: dict[str, float]
-):
+def test_links_are_where_forward_kinematics_puts_them(model, positions):
     links = LinkPoses(model, positions)
     for name, expected in forward_kinematics(model.robot, positions).items():
         assert np.array(links[name].matrix()) == pytest.approx(expected, abs=1e-12), name
@@ -70,7 +67,7 @@ def test_an_unknown_link_is_refused_with_those_that_exist():
         ("camera", (5, 0, 0)),
     ],
 )
-def test_a_frame_is_found_by_its_name(name: str, position: tuple[float, float, float]):
+def test_a_frame_is_found_by_its_name(name, position):
     assert frame_pose(FULL, LINKS, name).position == pytest.approx(position)
 
 
@@ -90,7 +87,7 @@ def test_a_subframe_turns_with_its_object():
         ("qqq", "the frames are a"),
     ],
 )
-def test_an_unknown_frame_is_refused_with_near_ones(name: str, hint: str):
+def test_an_unknown_frame_is_refused_with_near_ones(name, hint):
     with pytest.raises(PlanningError) as caught:
         frame_pose(FULL, LINKS, name)
     assert caught.value.code is MoveItErrorCode.FRAME_TRANSFORM_FAILURE

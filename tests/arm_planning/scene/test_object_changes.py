@@ -12,7 +12,7 @@ from arm_planning.scene.allowed_collisions import AllowedCollisions
 from arm_planning.scene.object_changes import ObjectChange, Operation, change_object
 from arm_planning.scene.objects import AttachedBody, CollisionObject, PlacedShape
 from arm_planning.scene.scene import PlanningScene
-from arm_planning.scene.shapes import Cone, Plane, Shape, TriangleMesh
+from arm_planning.scene.shapes import Cone, Plane, TriangleMesh
 
 BOX = CollisionObject("box", at(1), (CUBE,), {"top": at(z=0.1)}, ("key", "db"))
 WITH_BOX = replace(
@@ -58,7 +58,7 @@ def test_an_object_of_one_shape_without_a_pose_stands_where_its_shape_stands():
 
 
 @pytest.mark.parametrize("pose", [at(1), RigidTransform(rotation=(0, 0, 0, -1))])
-def test_a_pose_of_its_own_stays(pose: RigidTransform):
+def test_a_pose_of_its_own_stays(pose):
     box = changed(SCENE, add("box", pose, shapes=(BALL,))).objects["box"]
     assert (box.pose, box.shapes) == (pose, (BALL,))
 
@@ -139,7 +139,7 @@ def test_removing_without_a_name_removes_all():
         ),
     ],
 )
-def test_what_is_not_possible_is_refused(change: ObjectChange, sentence: str):
+def test_what_is_not_possible_is_refused(change, sentence):
     assert refusal(WITH_BOX, change) == sentence
 
 
@@ -182,7 +182,7 @@ def test_what_is_not_possible_is_refused(change: ObjectChange, sentence: str):
         ),
     ],
 )
-def test_a_broken_shape_is_refused(shape: Shape, problem: str):
+def test_a_broken_shape_is_refused(shape, problem):
     assert refusal(SCENE, add("x", shapes=(PlacedShape(shape),))) == f"object 'x' has a {problem}"
 
 

@@ -84,7 +84,7 @@ def test_a_full_scene_keeps_only_the_robots_state():
 
 
 @pytest.mark.parametrize("is_diff", [True, False])
-def test_a_full_state_with_positions_starts_without_attached_bodies(is_diff: bool):
+def test_a_full_state_with_positions_starts_without_attached_bodies(is_diff):
     change = SceneChange(is_diff=is_diff, is_state_diff=False, positions={"turn": 1.0})
     assert not changed(FULL, change).attached
     again = changed(FULL, replace(change, attached=(GRASP_CUP,)))
@@ -178,9 +178,7 @@ def test_a_part_that_fails_leaves_the_others_in_force():
         ),
     ],
 )
-def test_what_is_not_possible_leaves_the_scene_as_it_was(
-    change: SceneChange, code: MoveItErrorCode, sentence: str
-):
+def test_what_is_not_possible_leaves_the_scene_as_it_was(change, code, sentence):
     assert problems(change) == [(code, sentence)]
 
 

@@ -89,7 +89,7 @@ OBJECTS = st.builds(
 
 
 @given(OBJECTS, st.booleans())
-def test_what_is_written_is_read_again(change, has_color: bool):
+def test_what_is_written_is_read_again(change, has_color):
     scene = change_object(SCENE, LINKS, change)
     if has_color:
         scene = replace(scene, colors={"x y": (0.1, 0.2, 0.3, 1.0)})
@@ -136,7 +136,7 @@ def test_a_mesh_is_read_again():
         (FILE.replace("big box", ""), "line 14: an object has no name; give it an id"),
     ],
 )
-def test_a_broken_file_is_refused_with_its_line(text: str, sentence: str):
+def test_a_broken_file_is_refused_with_its_line(text, sentence):
     with pytest.raises(PlanningError) as caught:
         read(text)
     assert str(caught.value) == f"x.scene, {sentence}"
@@ -146,7 +146,7 @@ def test_a_broken_file_is_refused_with_its_line(text: str, sentence: str):
     ("change", "part"),
     [(add("a\nb"), "the name 'a\\nb'"), (add("x", subframes={"a b": at()}), "'a b' of a subframe")],
 )
-def test_names_that_a_file_cannot_hold_are_refused(change, part: str):
+def test_names_that_a_file_cannot_hold_are_refused(change, part):
     with pytest.raises(PlanningError, match="cannot hold the name") as caught:
         scene_text(change_object(SCENE, LINKS, change))
     assert part in str(caught.value)

@@ -119,7 +119,7 @@ def add_again(body: CollisionObject) -> ObjectChange:
 
 
 @given(st.lists(SCENES, min_size=1, max_size=3))
-def test_each_scene_is_usable(changes: list[SceneChange]):
+def test_each_scene_is_usable(changes):
     scene = SCENE
     for change in changes:
         scene = after(scene, change)
@@ -134,7 +134,7 @@ def test_each_scene_is_usable(changes: list[SceneChange]):
 
 
 @given(st.lists(SCENES, min_size=1, max_size=3), CHANGES | ATTACHED)
-def test_what_fails_changes_nothing(changes: list[SceneChange], last: object):
+def test_what_fails_changes_nothing(changes, last):
     scene = SCENE
     for change in changes:
         scene = after(scene, change)
@@ -149,7 +149,7 @@ def test_what_fails_changes_nothing(changes: list[SceneChange], last: object):
 
 
 @given(st.lists(SCENES, min_size=1, max_size=3))
-def test_a_whole_scene_comes_back_as_it_was(changes: list[SceneChange]):
+def test_a_whole_scene_comes_back_as_it_was(changes):
     scene = SCENE
     for change in changes:
         scene = after(scene, change)
@@ -171,7 +171,7 @@ def test_a_whole_scene_comes_back_as_it_was(changes: list[SceneChange]):
 
 
 @given(st.lists(SCENES, min_size=1, max_size=3))
-def test_an_object_that_is_attached_and_detached_stays_where_it_is(changes: list[SceneChange]):
+def test_an_object_that_is_attached_and_detached_stays_where_it_is(changes):
     scene = SCENE
     for change in changes:
         scene = after(scene, change)

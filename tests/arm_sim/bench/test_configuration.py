@@ -28,30 +28,30 @@ NAMES = ("robot", "world", "controllers", "seed")
 
 
 @pytest.fixture
-def items(pytester: pytest.Pytester) -> dict[str, pytest.Item]:
+def items(pytester) -> dict[str, pytest.Item]:
     items, _ = pytester.inline_genitems(pytester.makepyfile(TESTS))
     return {item.name: item for item in items}
 
 
-def test_a_nearer_marker_overrides_single_arguments(items: dict[str, pytest.Item]):
+def test_a_nearer_marker_overrides_single_arguments(items):
     found = marked_arguments(items["test_it"], "arm_sim", NAMES)
     assert found == {"robot": "mine.urdf", "world": "objects", "seed": 2}
 
 
-def test_a_file_beside_the_test_is_found(items: dict[str, pytest.Item], pytester: pytest.Pytester):
+def test_a_file_beside_the_test_is_found(items, pytester):
     (pytester.path / "mine.urdf").touch()
     found = marked_arguments(items["test_it"], "arm_sim", NAMES)
     assert Path(found["robot"]) == pytester.path / "mine.urdf"
     assert found["world"] == "objects"
 
 
-def test_texts_and_mappings_are_no_files(items: dict[str, pytest.Item]):
+def test_texts_and_mappings_are_no_files(items):
     found = marked_arguments(items["test_contents"], "arm_sim", NAMES)
     assert found["robot"] == "<robot name='r'/>"
     assert found["controllers"] == {"a": 1}
 
 
-def test_an_unknown_argument_and_one_without_a_name_are_refused(items: dict[str, pytest.Item]):
+def test_an_unknown_argument_and_one_without_a_name_are_refused(items):
     with pytest.raises(CallError, match="has no argument 'seed'; it has robot, world"):
         marked_arguments(items["test_it"], "arm_sim", ("robot", "world"))
     with pytest.raises(CallError, match="takes arguments by name"):

@@ -44,5 +44,5 @@ def test_what_it_shows_cannot_be_changed_but_it_still_takes_states():
         ("b", "effort", "N"),
     ],
 )
-def test_units(joint: str, quantity: str, unit: str):
+def test_units(joint, quantity, unit):
     assert history_of(0).unit(joint, quantity) == unit

@@ -1,7 +1,6 @@
 """The command line of the launch that a test asks for."""
 
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -26,7 +25,7 @@ ARM = [sys.executable, "-P", "-m", "arm_cli", "launch"]
         ({"arguments": {"paused": True, "rate": 2}}, ["paused:=true", "rate:=2"]),
     ],
 )
-def test_the_command(arguments: dict, words: list[str]):
+def test_the_command(arguments, words):
     assert launch_command(**arguments) == [*ARM, *words]
 
 
@@ -35,7 +34,7 @@ def test_a_robot_and_a_launch_file_exclude_each_other():
         launch_command(robot="arm", launch="my.launch.py")
 
 
-def test_the_run_of_a_robot_is_recorded(tmp_path: Path):
+def test_the_run_of_a_robot_is_recorded(tmp_path):
     file = tmp_path / "there" / "test.run"
     assert launch_command(robot="mycobot", record_to=file)[-1] == f"record_run:={file}"
     assert file.parent.is_dir()

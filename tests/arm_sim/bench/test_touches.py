@@ -24,7 +24,7 @@ def run(log: TouchLog, data: mujoco.MjData, steps: int) -> None:
         log.note(data.time, data)
 
 
-def test_a_touch_is_noted_with_its_time(data: mujoco.MjData):
+def test_a_touch_is_noted_with_its_time(data):
     log = TouchLog()
     run(log, data, 500)
     (touch,) = log.touches
@@ -35,7 +35,7 @@ def test_a_touch_is_noted_with_its_time(data: mujoco.MjData):
     assert log.present == (touch,)
 
 
-def test_a_touch_ends(data: mujoco.MjData):
+def test_a_touch_ends(data):
     log = TouchLog()
     run(log, data, 300)
     end_s = data.time
@@ -57,7 +57,7 @@ def test_bodies_that_sleep_still_touch():
     assert touch.ended_s == data.time
 
 
-def test_a_new_touch_of_the_same_bodies_is_another_one(data: mujoco.MjData):
+def test_a_new_touch_of_the_same_bodies_is_another_one(data):
     log = TouchLog()
     run(log, data, 300)
     data.qpos[2] = 0.3

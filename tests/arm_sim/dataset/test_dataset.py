@@ -92,7 +92,7 @@ def test_a_pause_of_the_reference_repeats_its_last_message():
         ([replace(camera([0, 50]), width=63)], None, "63 x 48; video needs even numbers"),
     ],
 )
-def test_streams_without_rows_are_refused(streams: list, fps: int | None, problem: str):
+def test_streams_without_rows_are_refused(streams, fps, problem):
     with pytest.raises(CallError, match=problem):
         align(streams, 0, fps)
 
@@ -112,7 +112,7 @@ def test_statistics_of_images_are_by_channel_in_shares_of_white():
 
 
 @given(st.lists(st.integers(0, 255), min_size=1, max_size=60))
-def test_statistics_of_images_are_those_of_their_values(reds: list[int]):
+def test_statistics_of_images_are_those_of_their_values(reds):
     image = np.zeros((1, len(reds), 3), dtype=np.uint8)
     image[0, :, 0] = reds
     found, wanted = (
@@ -124,7 +124,7 @@ def test_statistics_of_images_are_those_of_their_values(reds: list[int]):
 
 
 @given(st.lists(st.integers(0, 255), min_size=2, max_size=60), st.data())
-def test_counts_of_parts_add_up_to_those_of_the_whole(reds: list[int], data: st.DataObject):
+def test_counts_of_parts_add_up_to_those_of_the_whole(reds, data):
     cut = data.draw(st.integers(1, len(reds) - 1))
     images = [np.full((1, 1, 3), red, dtype=np.uint8) for red in reds]
     parts = ImageCounts(images[:cut])
@@ -136,7 +136,7 @@ def test_counts_of_parts_add_up_to_those_of_the_whole(reds: list[int], data: st.
 
 
 @pytest.fixture
-def written(tmp_path: Path) -> Path:
+def written(tmp_path) -> Path:
     folder = tmp_path / "demo"
     with DatasetWriter(folder, "arm") as writer:
         for shift in (0, 1000):
@@ -147,7 +147,7 @@ def written(tmp_path: Path) -> Path:
     return folder
 
 
-def test_a_dataset_keeps_the_format(written: Path):
+def test_a_dataset_keeps_the_format(written):
     assert check_dataset(written) == []
     info = json.loads((written / "meta/info.json").read_text())
     assert (info["codebase_version"], info["fps"], info["total_frames"]) == ("v3.0", 20, 12)
@@ -166,7 +166,7 @@ def test_a_dataset_keeps_the_format(written: Path):
     assert source["streams"][2]["repeated"] == 5
 
 
-def test_the_statistics_of_a_dataset_are_those_of_all_its_frames(tmp_path: Path):
+def test_the_statistics_of_a_dataset_are_those_of_all_its_frames(tmp_path):
     lengths = (2, 6, 3)
     with DatasetWriter(tmp_path / "demo", "arm") as writer:
         for count in lengths:
@@ -184,7 +184,7 @@ def test_the_statistics_of_a_dataset_are_those_of_all_its_frames(tmp_path: Path)
         assert found[feature] == {name: one.tolist() for name, one in statistics.items()}
 
 
-def test_the_frames_of_a_video_are_the_images_of_the_rows(written: Path):
+def test_the_frames_of_a_video_are_the_images_of_the_rows(written):
     path = written / "videos/observation.images.front/chunk-000/file-000.mp4"
     with av.open(str(path)) as video:
         frames = [frame.to_ndarray(format="rgb24") for frame in video.decode(video=0)]
@@ -192,7 +192,7 @@ def test_the_frames_of_a_video_are_the_images_of_the_rows(written: Path):
     assert reds == pytest.approx([40 * k for k in range(6)] * 2, abs=6)
 
 
-def test_a_full_file_is_followed_by_the_next_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_full_file_is_followed_by_the_next_one(tmp_path, monkeypatch):
     monkeypatch.setattr(shared_files, "DATA_FILE_MB", 0)
     monkeypatch.setattr(shared_files, "VIDEO_FILE_S", 0.6)
     monkeypatch.setattr(shared_files, "FILES_IN_CHUNK", 2)
@@ -212,7 +212,7 @@ def test_a_full_file_is_followed_by_the_next_one(tmp_path: Path, monkeypatch: py
     assert [one[f"{video}/from_timestamp"] for one in episodes] == [0.0, 0.3, 0.0, 0.3, 0.0]
 
 
-def test_tasks_have_the_index_that_pandas_reads(written: Path):
+def test_tasks_have_the_index_that_pandas_reads(written):
     schema = pq.read_schema(written / "meta/tasks.parquet")
     assert json.loads(schema.metadata[b"pandas"])["index_columns"] == ["task"]
     assert pq.read_table(written / "meta/tasks.parquet").to_pylist() == [
@@ -230,7 +230,7 @@ def shift_times(table: pa.Table) -> pa.Table:
     return table.set_column(table.column_names.index("timestamp"), "timestamp", times)
 
 
-def test_faults_are_found(written: Path):
+def test_faults_are_found(written):
     change_rows(written, shift_times)
     assert check_dataset(written) == [
         f"episode {number}: the timestamps are not frame / fps" for number in (0, 1)
@@ -246,7 +246,7 @@ def test_faults_are_found(written: Path):
         check_dataset(written)
 
 
-def test_a_video_with_other_frames_is_found(written: Path):
+def test_a_video_with_other_frames_is_found(written):
     videos = written / "videos/observation.images.front/chunk-000"
     with DatasetWriter(written.with_name("short"), "arm") as writer:
         streams = [camera([0, 50]), state([0, 50]), state([0], "action")]
@@ -272,15 +272,13 @@ def add(writer: DatasetWriter, *episodes: list) -> None:
         ([state([0, 50])], [state([0, 10])], "100 rows per second, and the earlier ones have 20"),
     ],
 )
-def test_an_episode_that_differs_is_refused_and_nothing_is_left(
-    tmp_path: Path, first: list, second: list, problem: str
-):
+def test_an_episode_that_differs_is_refused_and_nothing_is_left(tmp_path, first, second, problem):
     with pytest.raises(CallError, match=problem), DatasetWriter(tmp_path / "demo", "arm") as writer:
         add(writer, first, second)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_dataset_without_episodes_or_in_a_folder_that_exists_is_refused(tmp_path: Path):
+def test_a_dataset_without_episodes_or_in_a_folder_that_exists_is_refused(tmp_path):
     with pytest.raises(CallError, match="needs an episode"):
         DatasetWriter(tmp_path / "demo", "arm").finish()
     with pytest.raises(CallError, match="exists"):

@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 WRITE = """
 import sys
@@ -23,7 +22,7 @@ FILLINGS = ("0", "1", "85")
 """What the C library fills new memory with, and memory that is freed; 0 leaves it as it was."""
 
 
-def test_what_memory_held_before_changes_no_byte(tmp_path: Path):
+def test_what_memory_held_before_changes_no_byte(tmp_path):
     written = []
     for filling in FILLINGS:
         path = tmp_path / f"{filling}.mp4"

@@ -41,7 +41,7 @@ def files_of(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.mark.gl
-def test_equal_seeds_give_equal_files(short: PickDemonstrator, tmp_path: Path):
+def test_equal_seeds_give_equal_files(short, tmp_path):
     def start(seed: int) -> "Future[Demonstration]":
         return done(replace(short.make(seed), failure=""))
 
@@ -56,7 +56,7 @@ def test_equal_seeds_give_equal_files(short: PickDemonstrator, tmp_path: Path):
 
 
 @pytest.mark.gl
-def test_light_and_views_differ_from_seed_to_seed(short: PickDemonstrator):
+def test_light_and_views_differ_from_seed_to_seed(short):
     one, two = (short.make(seed) for seed in (1, 3))
     for name, image in one.images.items():
         assert image.shape == (4, 240, 320, 3)
@@ -83,7 +83,7 @@ def empty(seed: int, failure: str) -> Demonstration:
     return Demonstration(seed, failure, {}, ("j0",), rows, around, rows, {}, 0.5)
 
 
-def test_failures_are_left_out_and_counted(tmp_path: Path):
+def test_failures_are_left_out_and_counted(tmp_path):
     said: list[str] = []
     recorded = record_demonstrations(
         tmp_path / "data",
@@ -104,7 +104,7 @@ def test_failures_are_left_out_and_counted(tmp_path: Path):
     assert [one["source"]["seed"] for one in told["episodes"]] == [7, 9]
 
 
-def test_it_ends_early_with_the_episodes_so_far(tmp_path: Path):
+def test_it_ends_early_with_the_episodes_so_far(tmp_path):
     said: list[str] = []
 
     def has_said_three() -> bool:
@@ -126,7 +126,7 @@ def test_it_ends_early_with_the_episodes_so_far(tmp_path: Path):
     assert len(json.loads((tmp_path / "data/meta/arm_suite.json").read_text())["episodes"]) == 2
 
 
-def test_an_expert_that_always_fails_ends(tmp_path: Path):
+def test_an_expert_that_always_fails_ends(tmp_path):
     with pytest.raises(DemonstrationError, match=r"failed in 11 episodes.*of seed 10: no plan"):
         record_demonstrations(tmp_path / "data", 2, lambda seed: done(empty(seed, "no plan")))
     assert list(tmp_path.iterdir()) == []

@@ -25,7 +25,7 @@ PENDULUM = """
 
 
 @pytest.fixture
-def pendulum(tmp_path: Path) -> Path:
+def pendulum(tmp_path) -> Path:
     file = tmp_path / "pendulum.urdf"
     file.write_text(PENDULUM.format(effort=3))
     return file
@@ -48,7 +48,7 @@ def test_gymnasiums_checker_has_nothing_to_say():
 
 
 @pytest.mark.parametrize("actions", ["position", "step", "velocity", "effort"])
-def test_the_checker_accepts_all_actions_and_any_robot(pendulum: Path, actions: str):
+def test_the_checker_accepts_all_actions_and_any_robot(pendulum, actions):
     env = ArmEnv(pendulum, actions=actions)
     with warnings.catch_warnings(record=True) as said:
         check_env(env, skip_render_check=True)
@@ -66,7 +66,7 @@ def states(env: ArmEnv, seed: int | None, count: int = 20) -> list[bytes]:
     return found
 
 
-def test_equal_seeds_have_equal_bits_whatever_came_before(reach: ArmReach):
+def test_equal_seeds_have_equal_bits_whatever_came_before(reach):
     first = states(reach, 1)
     other = states(reach, 2)
     assert states(reach, 1) == first
@@ -87,7 +87,7 @@ def test_an_episode_goes_on_where_the_robot_is_if_it_does_not_restart():
     env.close()
 
 
-def test_an_action_of_one_is_the_limit(pendulum: Path):
+def test_an_action_of_one_is_the_limit(pendulum):
     for actions, limit in (("position", np.pi), ("velocity", 4.0), ("effort", 3.0), ("step", 0.16)):
         env = ArmEnv(pendulum, actions=actions)
         env.reset(seed=0)
@@ -96,7 +96,7 @@ def test_an_action_of_one_is_the_limit(pendulum: Path):
         env.close()
 
 
-def test_a_users_functions_make_the_task(pendulum: Path):
+def test_a_users_functions_make_the_task(pendulum):
     task = Task(
         observations={"tip": Observation(lambda scene: scene.point("rod"), -2.0, 2.0)},
         reward=lambda scene: scene.position[..., 0],
@@ -126,7 +126,7 @@ def test_images_of_cameras_are_observations():
     env.close()
 
 
-def test_an_unstable_physics_truncates_the_episode(pendulum: Path):
+def test_an_unstable_physics_truncates_the_episode(pendulum):
     env = ArmEnv(pendulum, actions="effort")
     env.reset(seed=0)
     still = np.array([0.0], dtype=np.float32)
@@ -138,7 +138,7 @@ def test_an_unstable_physics_truncates_the_episode(pendulum: Path):
     env.close()
 
 
-def test_what_cannot_be_used_is_said(pendulum: Path, tmp_path: Path, reach: ArmReach):
+def test_what_cannot_be_used_is_said(pendulum, tmp_path, reach):
     with pytest.raises(CallError, match="no actions 'torque'; there are position, step"):
         ArmEnv(pendulum, actions="torque")
     with pytest.raises(

@@ -36,7 +36,7 @@ def make(restart: bool) -> tuple[gymnasium.vector.VectorEnv, gymnasium.vector.Ve
 
 
 @pytest.mark.parametrize("restart", [True, False])
-def test_a_batch_gives_the_bits_of_single_environments(restart: bool):
+def test_a_batch_gives_the_bits_of_single_environments(restart):
     batch, single = make(restart)
     assert isinstance(batch, BatchEnv)
     assert batch.observation_space == single.observation_space

@@ -15,7 +15,7 @@ EPISODE = 6
 
 
 @pytest.fixture(params=["cpu", "cuda"])
-def device(request: pytest.FixtureRequest) -> str:
+def device(request) -> str:
     pytest.importorskip("mujoco_warp", reason="the extra `gpu` is not installed")
     wp = pytest.importorskip("warp", reason="the extra `gpu` is not installed")
     if request.param == "cuda" and not wp.get_cuda_device_count():
@@ -26,9 +26,7 @@ def device(request: pytest.FixtureRequest) -> str:
 @pytest.mark.parametrize(
     ("name", "options"), [("arm_sim/ArmReach-v0", ARM), ("arm_sim/ArmPick-v0", {})]
 )
-def test_copies_on_a_device_are_near_those_on_the_host(
-    name: str, options: dict[str, object], device: str
-):
+def test_copies_on_a_device_are_near_those_on_the_host(name, options, device):
     there = gymnasium.make_vec(name, num_envs=COPIES, device=device, **options)
     here = gymnasium.make_vec(name, num_envs=COPIES, **options)
     assert isinstance(there, BatchEnv)
@@ -48,7 +46,7 @@ def test_copies_on_a_device_are_near_those_on_the_host(
     here.close()
 
 
-def test_episodes_end_and_start_again_copy_by_copy(device: str):
+def test_episodes_end_and_start_again_copy_by_copy(device):
     options = {"max_episode_steps": EPISODE, **ARM}
     task = Task(terminated=lambda scene: scene.position[..., 0] > 0.2)
     env = BatchEnv(COPIES, "arm", task, actions="velocity", device=device, **options)
@@ -70,7 +68,7 @@ def test_episodes_end_and_start_again_copy_by_copy(device: str):
 
 
 @pytest.mark.parametrize("restart", [True, False])
-def test_a_copy_that_becomes_unstable_is_truncated_with_finite_numbers(restart: bool, device: str):
+def test_a_copy_that_becomes_unstable_is_truncated_with_finite_numbers(restart, device):
     env = gymnasium.make_vec(
         "arm_sim/ArmReach-v0", num_envs=COPIES, device=device, restart=restart, **ARM
     )
@@ -93,7 +91,7 @@ def test_a_copy_that_becomes_unstable_is_truncated_with_finite_numbers(restart: 
     env.close()
 
 
-def test_equal_seeds_give_equal_numbers_on_a_device(device: str):
+def test_equal_seeds_give_equal_numbers_on_a_device(device):
     runs = []
     for _ in range(2):
         env = gymnasium.make_vec("arm_sim/ArmReach-v0", num_envs=COPIES, device=device, **ARM)

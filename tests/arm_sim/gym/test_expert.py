@@ -8,7 +8,7 @@ from arm_sim.gym import ArmPick, ArmReach
 
 
 @pytest.mark.parametrize("actions", ["step", "position"])
-def test_the_experts_actions_reach_the_goal(actions: str):
+def test_the_experts_actions_reach_the_goal(actions):
     env = ArmReach(actions=actions, expert=True)
     for seed in range(5):
         _, info = env.reset(seed=seed)

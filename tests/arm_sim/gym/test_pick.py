@@ -41,13 +41,13 @@ def along(path: JointPath, grip: float) -> Iterator[np.ndarray]:
         yield np.array([*arm, grip])
 
 
-def test_gymnasiums_checker_has_nothing_to_say(env: ArmPick):
+def test_gymnasiums_checker_has_nothing_to_say(env):
     with warnings.catch_warnings(record=True) as said:
         check_env(env, skip_render_check=True, skip_close_check=True)
     assert [str(warning.message) for warning in said] == []
 
 
-def test_a_known_way_lifts_the_cylinder(env: ArmPick):
+def test_a_known_way_lifts_the_cylinder(env):
     seen, _ = env.reset(seed=0)
     middle, half = (env.upper + env.lower) / 2.0, (env.upper - env.lower) / 2.0
     rewards, terminated = [], False
@@ -65,7 +65,7 @@ def test_a_known_way_lifts_the_cylinder(env: ArmPick):
     assert rewards[-1] > 0.0 > rewards[0]
 
 
-def test_copies_of_the_pick_have_the_same_bits(env: ArmPick):
+def test_copies_of_the_pick_have_the_same_bits(env):
     batch = gymnasium.make_vec("arm_sim/ArmPick-v0", num_envs=9, actions="position")
     assert isinstance(batch, BatchEnv)
     seen, wanted = batch.reset(seed=[4] * 9)[0], env.reset(seed=4)[0]
@@ -77,7 +77,7 @@ def test_copies_of_the_pick_have_the_same_bits(env: ArmPick):
     batch.close()
 
 
-def test_the_world_of_the_launch_makes_no_difference(env: ArmPick):
+def test_the_world_of_the_launch_makes_no_difference(env):
     launched = ArmPick(actions="position", simulation={"world": "pick_and_place_demo"})
     bodies = [one.simulation.parts.physics.model.nbody for one in (env, launched)]
     assert bodies[0] < bodies[1]  # Groceries, which the arm does not reach.

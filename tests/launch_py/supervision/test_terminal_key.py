@@ -85,7 +85,7 @@ class OnTerminal:
 
 
 @pytest.fixture
-def launch(tmp_path: Path) -> Iterator[OnTerminal]:
+def launch(tmp_path) -> Iterator[OnTerminal]:
     running = OnTerminal(tmp_path)
     yield running
     running.close()

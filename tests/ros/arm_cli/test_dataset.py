@@ -28,7 +28,7 @@ def info_of(dataset: Path) -> dict:
 
 
 @pytest.mark.usefixtures("commander")
-def test_a_running_robot_is_recorded_as_a_dataset(start, run, counts, tmp_path: Path):
+def test_a_running_robot_is_recorded_as_a_dataset(start, run, counts, tmp_path):
     recorder, bag = start(RECORD), tmp_path / "wave_bags/episode_000000"
     recorder.wait_until(lambda: counts(bag) >= ENOUGH, "enough of every topic")
     assert recorder.interrupt() == 0, recorder.err
@@ -52,7 +52,7 @@ def test_a_running_robot_is_recorded_as_a_dataset(start, run, counts, tmp_path: 
 
 
 @pytest.mark.usefixtures("commander")
-def test_episodes_follow_one_another(run, tmp_path: Path):
+def test_episodes_follow_one_another(run, tmp_path):
     assert "wrote wave: 2 episodes" in run(f"{RECORD} --episodes 2 --duration 1 --cameras")
     assert info_of(tmp_path / "wave")["total_episodes"] == 2
     rows = pq.read_table(tmp_path / "wave/data/chunk-000/file-000.parquet")

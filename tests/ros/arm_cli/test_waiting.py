@@ -18,7 +18,7 @@ ACTION = "control_msgs/action/GripperCommand"
 
 
 @pytest.fixture
-def arm(capfd: Any) -> Callable[..., Any]:
+def arm(capfd) -> Callable[..., Any]:
     """Return a function that runs a verb in this process and returns its output."""
 
     def run(*words: str, code: int) -> Any:
@@ -34,18 +34,18 @@ def arm(capfd: Any) -> Callable[..., Any]:
 
 
 @pytest.fixture
-def notices_come_at_once(monkeypatch: Any) -> None:
+def notices_come_at_once(monkeypatch) -> None:
     """Let a command say early what it waits for: what it did before may have taken most of it."""
     monkeypatch.setattr(session, "NOTICE_AFTER_S", 0.1)
 
 
 @pytest.fixture
-def notices_come_late(monkeypatch: Any) -> None:
+def notices_come_late(monkeypatch) -> None:
     """Let a command say what it waits for when it has had time to discover the others."""
     monkeypatch.setattr(session, "NOTICE_AFTER_S", 2.9)
 
 
-def test_a_missing_service(arm: Any) -> None:
+def test_a_missing_service(arm):
     said = arm("service", "call", "/no", "std_srvs/srv/Trigger", "--timeout", "1.5", code=1)
     waiting, gave_up = said.err.splitlines()
     assert waiting.startswith("waiting for service to become available... /no")
@@ -53,7 +53,7 @@ def test_a_missing_service(arm: Any) -> None:
 
 
 @pytest.mark.usefixtures("notices_come_at_once")
-def test_a_service_that_does_not_answer(arm: Any, client: Any) -> None:
+def test_a_service_that_does_not_answer(arm, client):
     # Nobody spins this node, which shares the client's context.
     from rclpy.node import Node
 
@@ -70,7 +70,7 @@ def test_a_service_that_does_not_answer(arm: Any, client: Any) -> None:
 
 
 @pytest.mark.usefixtures("notices_come_late")
-def test_a_type_that_no_publisher_of_the_topic_has(arm: Any, client: Any) -> None:
+def test_a_type_that_no_publisher_of_the_topic_has(arm, client):
     publisher = client.node.create_publisher(JointState, "/states", 10)
     try:
         words = ("topic", "echo", "/states", "std_msgs/msg/String", "--once", "--timeout", "3")
@@ -84,7 +84,7 @@ def test_a_type_that_no_publisher_of_the_topic_has(arm: Any, client: Any) -> Non
 
 
 @pytest.mark.usefixtures("notices_come_late")
-def test_messages_that_a_filter_refuses_are_not_silence(arm: Any, client: Any) -> None:
+def test_messages_that_a_filter_refuses_are_not_silence(arm, client):
     from rclpy.qos import DurabilityPolicy, QoSProfile
     from std_msgs.msg import String
 
@@ -101,7 +101,7 @@ def test_messages_that_a_filter_refuses_are_not_silence(arm: Any, client: Any) -
 
 
 @pytest.mark.usefixtures("notices_come_late")
-def test_silence_beside_another_user_is_explained(arm: Any, client: Any, monkeypatch: Any) -> None:
+def test_silence_beside_another_user_is_explained(arm, client, monkeypatch):
     monkeypatch.setattr("arm_cli.ros.listeners.other_users", lambda domain: ["anna"])
     publisher = client.node.create_publisher(JointState, "/states", 10)
     try:
@@ -113,7 +113,7 @@ def test_silence_beside_another_user_is_explained(arm: Any, client: Any, monkeyp
 
 
 @pytest.mark.usefixtures("notices_come_late")
-def test_a_command_whose_port_was_removed_says_so(arm: Any, client: Any, monkeypatch: Any) -> None:
+def test_a_command_whose_port_was_removed_says_so(arm, client, monkeypatch):
     monkeypatch.setattr("arm_cli.ros.listeners.lost_ports", lambda: ["/dev/shm/fastrtps_port1"])
     publisher = client.node.create_publisher(JointState, "/states", 10)
     try:
@@ -124,13 +124,13 @@ def test_a_command_whose_port_was_removed_says_so(arm: Any, client: Any, monkeyp
     assert said.err.startswith(notice)
 
 
-def test_a_missing_action(arm: Any) -> None:
+def test_a_missing_action(arm):
     said = arm("action", "send_goal", "/no", ACTION, "--timeout", "0.2", code=1)
     assert said.err == "arm action send_goal: action /no has no server (waited 0.2 s)\n"
 
 
 @pytest.fixture
-def endless_action(client: Any) -> Iterator[list[str]]:
+def endless_action(client) -> Iterator[list[str]]:
     """An action that ends only by cancelling; yields the cancelled goals."""
     cancelled: list[str] = []
 
@@ -156,9 +156,7 @@ def endless_action(client: Any) -> Iterator[list[str]]:
 
 
 @pytest.mark.usefixtures("notices_come_at_once")
-def test_a_goal_is_cancelled_at_its_timeout(
-    arm: Any, client: Any, endless_action: list[str]
-) -> None:
+def test_a_goal_is_cancelled_at_its_timeout(arm, client, endless_action):
     said = arm("action", "send_goal", "/endless", ACTION, "--timeout", "4", code=1)
     assert said.err.splitlines()[-2:] == [
         "waiting for the result of /endless...",
@@ -168,7 +166,7 @@ def test_a_goal_is_cancelled_at_its_timeout(
     client.wait_until(lambda: endless_action, "the goal cancelled")
 
 
-def test_simulated_stamps_are_explained(client: Any, start: Any) -> None:
+def test_simulated_stamps_are_explained(client, start):
     publisher = client.node.create_publisher(JointState, "/joint_states", 10)
     state = JointState()
     state.header.stamp.sec = 12

@@ -32,7 +32,7 @@ def answer(_request: Any, response: Any) -> Any:
     return response
 
 
-def test_requests_and_responses_are_shown(client: Any, start: Any) -> None:
+def test_requests_and_responses_are_shown(client, start):
     service = client.node.create_service(SetBool, "/switch", answer)
     service.configure_introspection(
         client.node.get_clock(), qos_profile_system_default, ServiceIntrospectionState.CONTENTS
@@ -49,7 +49,7 @@ def test_requests_and_responses_are_shown(client: Any, start: Any) -> None:
     assert all("event_type: 1" in event for event in requests)
 
 
-def test_a_service_that_publishes_nothing_is_explained(client: Any, run_until: Any) -> None:
+def test_a_service_that_publishes_nothing_is_explained(client, run_until):
     client.node.create_service(SetBool, "/silent", answer)
     explained = "is service introspection enabled in its node?"
     line = "arm service echo /silent --timeout 1.5"

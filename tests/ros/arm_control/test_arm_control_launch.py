@@ -1,11 +1,9 @@
 """arm_control.launch.py: the controllers of a world that is already up."""
 
-from typing import Any
-
 
 def test_one_spawner_after_the_other_and_unspawner_takes_them_out(
-    manager: Any, control: Any, launch: Any, unspawn: Any
-) -> None:
+    manager, control, launch, unspawn
+):
     launched = launch("arm_control", "arm_control.launch.py")
     assert launched.wait() == 0, launched.output
     assert control.states() == {
@@ -20,9 +18,7 @@ def test_one_spawner_after_the_other_and_unspawner_takes_them_out(
     assert control.states() == {}
 
 
-def test_a_controller_that_cannot_be_started_ends_it_with_a_sentence(
-    manager: Any, control: Any, launch: Any
-) -> None:
+def test_a_controller_that_cannot_be_started_ends_it_with_a_sentence(manager, control, launch):
     control.start("position_controller")
     launched = launch("arm_control", "arm_control.launch.py")
     assert launched.wait() == 1, launched.output

@@ -1,7 +1,6 @@
 """The launch of the arm on emulated servos: it moves, loses its plug, and is taken up again."""
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,14 +13,12 @@ ACTIVE = 3
 
 
 @pytest.fixture
-def port(tmp_path: Path) -> Iterator[EmulatedPort]:
+def port(tmp_path) -> Iterator[EmulatedPort]:
     with EmulatedPort(FeetechServos(range(1, 5)), tmp_path / "servos") as plugged:
         yield plugged
 
 
-def test_it_moves_and_is_taken_up_again_after_its_plug_was_pulled(
-    port: EmulatedPort, run: Any, client: Any, control_of: Any
-) -> None:
+def test_it_moves_and_is_taken_up_again_after_its_plug_was_pulled(port, run, client, control_of):
     from diagnostic_msgs.msg import DiagnosticArray
     from lifecycle_msgs.msg import State
     from sensor_msgs.msg import JointState

@@ -11,7 +11,7 @@ from robots import box, joint, link, robot
 
 
 @pytest.fixture
-def urdf(tmp_path: Path) -> Path:
+def urdf(tmp_path) -> Path:
     """The file of an arm of three joints on a column."""
     file = tmp_path / "arm.urdf"
     file.write_text(

@@ -3,7 +3,6 @@
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
 from types import SimpleNamespace
 
 import pytest
@@ -13,7 +12,7 @@ TIMEOUT_S = 100.0
 
 
 @pytest.fixture(scope="module")
-def launched(launch_for_file: Callable[..., Program]) -> Program:
+def launched(launch_for_file) -> Program:
     program = launch_for_file("mycobot_moveit_config", "demo.launch.py", "viewer:=false")
     program.wait_until_ready()
     return program

@@ -63,7 +63,7 @@ class Server:
 
 
 @pytest.fixture
-def server(context: Context) -> Iterator[Server]:
+def server(context) -> Iterator[Server]:
     server = Server(context)
     yield server
     server.end()

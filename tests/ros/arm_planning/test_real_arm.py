@@ -4,9 +4,8 @@ import math
 import os
 import sys
 import urllib.request
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from programs import Program, RosProgram
@@ -19,7 +18,7 @@ pytestmark = pytest.mark.timeout(600)
 
 
 @pytest.fixture(scope="module")
-def arm(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[EmulatedMyCobot, Path]]:
+def arm(tmp_path_factory) -> Iterator[tuple[EmulatedMyCobot, Path]]:
     """Return an emulated arm and its port."""
     emulated, path = EmulatedMyCobot(), tmp_path_factory.mktemp("port") / "mycobot"
     with EmulatedPort(emulated, path):
@@ -27,7 +26,7 @@ def arm(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[EmulatedMyCo
 
 
 @pytest.fixture(scope="module")
-def launched(arm: tuple[EmulatedMyCobot, Path], launch_for_file: Callable[..., Program]) -> Program:
+def launched(arm, launch_for_file) -> Program:
     """Return the launch of the simulated arm with the driver in its place, ready."""
     program = launch_for_file(
         *("mycobot", "planning:=true", "viewer:=true", "viewer_port:=0"),
@@ -40,12 +39,7 @@ def launched(arm: tuple[EmulatedMyCobot, Path], launch_for_file: Callable[..., P
 
 
 def test_a_planned_motion_moves_the_arm_and_is_recorded(
-    arm: tuple[EmulatedMyCobot, Path],
-    planning: Any,
-    request_of: Any,
-    joint_goal: Any,
-    joints: Any,
-    tmp_path: Path,
+    arm, planning, request_of, joint_goal, joints, tmp_path
 ):
     bag = tmp_path / "bag"
     words = ("bag", "record", "/joint_states", "-o", str(bag))
@@ -73,7 +67,7 @@ def test_a_planned_motion_moves_the_arm_and_is_recorded(
     assert any(0.05 < position < 0.35 for position in turned), "the motion itself"
 
 
-def test_the_page_is_served_without_complaint(launched: Program):
+def test_the_page_is_served_without_complaint(launched):
     line = launched.wait_for_line("the page is at http://")
     with urllib.request.urlopen(line.partition("is at ")[2].strip(), timeout=60.0) as page:
         assert page.status == 200

@@ -11,11 +11,11 @@ from programs import Program
 
 INVALID, FINE, DECELERATE_FOR_COLLISION, HALT_FOR_COLLISION = -1, 0, 4, 5
 JOINT_JOG, TWIST = 0, 1
-BASE, SHOULDER = "link1_to_link2", "link2_to_link3"
+BASE = "link1_to_link2"
 
 
 @pytest.fixture(scope="module")
-def launched(launch_for_file: Callable[..., Program]) -> Program:
+def launched(launch_for_file) -> Program:
     """Return the simulation with move_group and servo_node, ready."""
     program = launch_for_file("mycobot", "planning:=true", "servo:=true")
     program.wait_until_ready()
@@ -105,20 +105,18 @@ class JogClient:
 
 
 @pytest.fixture(scope="module")
-def jog(planning_for_file: Any) -> JogClient:
+def jog(planning_for_file) -> JogClient:
     """Return the client of the whole file."""
     return JogClient(planning_for_file)
 
 
-def test_before_a_type_is_chosen_nothing_moves_and_the_status_says_why(jog: JogClient):
+def test_before_a_type_is_chosen_nothing_moves_and_the_status_says_why(jog):
     jog.is_refused(jog.joint_jog(BASE, 1.0), "no command type is chosen yet")
     assert not jog.switch(7)
     assert not jog.trajectories.messages
 
 
-def test_a_joint_moves_while_commands_come_and_then_nothing_is_commanded(
-    jog: JogClient, launched: Program
-):
+def test_a_joint_moves_while_commands_come_and_then_nothing_is_commanded(jog, launched):
     assert jog.switch(JOINT_JOG)
     with jog.held(jog.joint_jog(BASE, 0.8)):
         jog.planning.joint_moves(BASE, 0.2)
@@ -135,7 +133,7 @@ def test_a_joint_moves_while_commands_come_and_then_nothing_is_commanded(
 
 
 def test_a_twist_lowers_the_tip_along_a_frame_of_the_scene(
-    jog: JogClient, planning: Any, joint_goal: Any, request_of: Any, joints: Any
+    jog, planning, joint_goal, request_of, joints
 ):
     bent = joint_goal(joints(0.0, -0.5, 1.57, 0.6, 0.3))
     assert planning.move(request_of(bent)).result.error_code.val == 1
@@ -150,7 +148,7 @@ def test_a_twist_lowers_the_tip_along_a_frame_of_the_scene(
 
 
 def test_it_stops_before_an_object_of_the_scene_and_the_way_back_is_open(
-    jog: JogClient, planning: Any, box: Any, joint_goal: Any, request_of: Any, joints: Any
+    jog, planning, box, joint_goal, request_of, joints
 ):
     assert planning.move(request_of(joint_goal(joints(0.0, -1.2)))).result.error_code.val == 1
     assert planning.apply_object(box("post", (0.2, 0.25, 0.25), (0.04, 0.04, 0.6)))
@@ -171,7 +169,7 @@ def test_it_stops_before_an_object_of_the_scene_and_the_way_back_is_open(
         jog.status(FINE)
 
 
-def test_what_cannot_be_used_does_not_move_the_robot(jog: JogClient):
+def test_what_cannot_be_used_does_not_move_the_robot(jog):
     assert jog.switch(JOINT_JOG)
     before = jog.planning.stands_still()
     jog.is_refused(jog.joint_jog("elbow", 1.0), "no joint 'elbow'; ")
@@ -185,7 +183,7 @@ def test_what_cannot_be_used_does_not_move_the_robot(jog: JogClient):
     assert jog.planning.stands_still() == pytest.approx(before, abs=1e-3)
 
 
-def test_a_paused_jog_drops_commands_until_it_goes_on(jog: JogClient):
+def test_a_paused_jog_drops_commands_until_it_goes_on(jog):
     from std_srvs.srv import SetBool
 
     assert jog.switch(JOINT_JOG)
@@ -215,7 +213,7 @@ def teleop() -> Iterator[tuple[Program, Callable[[str], None]]]:
         os.close(terminal)
 
 
-def test_keys_jog_a_joint_and_space_stops_the_robot(jog: JogClient):
+def test_keys_jog_a_joint_and_space_stops_the_robot(jog):
     from std_srvs.srv import SetBool
 
     before = jog.planning.stands_still()[BASE]
@@ -238,7 +236,7 @@ def test_keys_jog_a_joint_and_space_stops_the_robot(jog: JogClient):
 
 
 def test_a_gamepad_moves_the_tip_while_its_button_is_held(
-    jog: JogClient, planning: Any, joint_goal: Any, request_of: Any, joints: Any
+    jog, planning, joint_goal, request_of, joints
 ):
     from sensor_msgs.msg import Joy
 

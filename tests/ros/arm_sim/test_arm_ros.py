@@ -115,7 +115,7 @@ def test_goals(arm_ros):
     arm_ros.assert_reaches({"gripper_controller": -0.3}, tolerance=0.05, within_s=WITHIN_S)
 
 
-def test_a_failing_test_has_the_launchs_log_and_a_plot(pytester: pytest.Pytester):
+def test_a_failing_test_has_the_launchs_log_and_a_plot(pytester):
     pytester.makepyfile(
         """
 import pytest

@@ -193,9 +193,7 @@ def hashes(file: RunFile) -> np.ndarray:
     ("robot", "run", "given", "times"),
     [("mycobot", mycobot_run, "submit_goal", 4), ("arm", arm_run, "offer", 2)],
 )
-def test_the_library_runs_as_the_node_does(
-    launch: Any, client: Any, tmp_path: Path, robot: str, run: Any, given: str, times: int
-):
+def test_the_library_runs_as_the_node_does(launch, client, tmp_path, robot, run, given, times):
     run(launch, client, tmp_path / "node.run")
     node_run = RunFile(tmp_path / "node.run")
     end = next(item.period for item in inputs(node_run) if item.method == "shutdown")

@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 
@@ -19,7 +18,7 @@ def arm_sim_verb(*words: str) -> str:
     return done.stdout
 
 
-def test_a_state_goes_from_the_library_to_the_node_and_back(launch, client, tmp_path: Path):
+def test_a_state_goes_from_the_library_to_the_node_and_back(launch, client, tmp_path):
     from sensor_msgs.msg import JointState
 
     first, second = tmp_path / "library.snapshot", tmp_path / "node.snapshot"

@@ -19,7 +19,7 @@ FOLLOWERS = {
 
 
 @pytest.fixture
-def result_of(client: Any) -> Callable[..., Any]:
+def result_of(client) -> Callable[..., Any]:
     """Send a goal to an action; return the result's envelope, with `status` and `result`."""
 
     def carry_out(action_type: Any, name: str, goal: Any) -> Any:

@@ -1,6 +1,6 @@
 """The service /get_planning_scene_mycobot, and mtc_node, which picks up what it returns."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from math import dist, inf
 from typing import Any
@@ -26,7 +26,7 @@ FASTER_RAD_S = 0.1
 
 
 @pytest.fixture(scope="module")
-def server(launch_for_file: Callable[..., Program]) -> Program:
+def server(launch_for_file) -> Program:
     """Return the server beside the myCobot with its camera and move_group, all of them ready."""
     launch_for_file("mycobot", "use_camera:=true", "planning:=true").wait_until_ready()
     program = launch_for_file(PACKAGE, "get_planning_scene_server.launch.py")

@@ -86,7 +86,7 @@ position_controller:
 
 
 @pytest.fixture
-def package(tmp_path: Path) -> Path:
+def package(tmp_path) -> Path:
     (tmp_path / "one.urdf.xacro").write_text(XACRO)
     (tmp_path / "controllers.yaml").write_text(CONTROLLERS)
     (tmp_path / "one.launch.py").write_text(LAUNCH)

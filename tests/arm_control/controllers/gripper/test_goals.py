@@ -1,7 +1,6 @@
 """The goals of every gripper controller: reached, stalled, cancelled, preempted, cut off."""
 
 import math
-from typing import Any
 
 import pytest
 
@@ -9,7 +8,7 @@ from arm_control.controllers.goals import GoalOutcome
 from arm_control.controllers.gripper.goals import GripperRequest, GripperResult
 
 
-def test_a_goal_ends_when_the_joint_is_there(rig: Any) -> None:
+def test_a_goal_ends_when_the_joint_is_there(rig):
     rig.place(0.0, velocity=0.3)
     rig.goal(0.4)
     rig.run(2.0)
@@ -25,21 +24,21 @@ def test_a_goal_ends_when_the_joint_is_there(rig: Any) -> None:
     assert (rig.result.state.position, rig.result.state.velocity) == (0.395, 0.3)
 
 
-def test_a_joint_that_is_there_already_ends_the_goal_in_the_first_cycle(rig: Any) -> None:
+def test_a_joint_that_is_there_already_ends_the_goal_in_the_first_cycle(rig):
     rig.place(0.4)
     rig.goal(0.4)
     rig.tick()
     assert rig.result.reached_goal
 
 
-def test_the_edge_of_the_tolerance_is_not_there(rig: Any) -> None:
+def test_the_edge_of_the_tolerance_is_not_there(rig):
     rig.set(goal_tolerance=0.25)
     rig.goal(0.25)
     rig.tick()
     assert rig.result is None
 
 
-def test_a_joint_at_rest_for_too_long_aborts_the_goal(rig: Any) -> None:
+def test_a_joint_at_rest_for_too_long_aborts_the_goal(rig):
     rig.place(0.1)
     rig.goal(0.4)
     rig.run(0.4)
@@ -54,7 +53,7 @@ def test_a_joint_at_rest_for_too_long_aborts_the_goal(rig: Any) -> None:
     assert rig.result.state.position == 0.1
 
 
-def test_a_stall_is_a_success_where_that_is_allowed(rig: Any) -> None:
+def test_a_stall_is_a_success_where_that_is_allowed(rig):
     rig.set(allow_stalling=True)
     rig.goal(0.4)
     rig.run(0.6)
@@ -62,7 +61,7 @@ def test_a_stall_is_a_success_where_that_is_allowed(rig: Any) -> None:
     assert not rig.result.reached_goal
 
 
-def test_a_moving_joint_does_not_stall_and_the_time_restarts_when_it_stops(rig: Any) -> None:
+def test_a_moving_joint_does_not_stall_and_the_time_restarts_when_it_stops(rig):
     rig.goal(0.4)
     rig.run(0.4)
     rig.place(0.1, velocity=0.01)
@@ -75,7 +74,7 @@ def test_a_moving_joint_does_not_stall_and_the_time_restarts_when_it_stops(rig: 
     assert rig.result.stalled
 
 
-def test_every_goal_has_its_own_time_to_stall(rig: Any) -> None:
+def test_every_goal_has_its_own_time_to_stall(rig):
     rig.goal(0.4, "first")
     rig.run(0.4)
     rig.goal(0.3)
@@ -83,7 +82,7 @@ def test_every_goal_has_its_own_time_to_stall(rig: Any) -> None:
     assert rig.result is None
 
 
-def test_a_stalled_gripper_keeps_its_grip(make_rig: Any) -> None:
+def test_a_stalled_gripper_keeps_its_grip(make_rig):
     rig = make_rig(stall_timeout=0.1)
     rig.goal(0.4)
     rig.run(0.5)
@@ -91,7 +90,7 @@ def test_a_stalled_gripper_keeps_its_grip(make_rig: Any) -> None:
     assert rig.commanded() == 0.4
 
 
-def test_cancelling_ends_the_goal_and_holds(make_rig: Any) -> None:
+def test_cancelling_ends_the_goal_and_holds(make_rig):
     rig = make_rig()
     rig.goal(0.4)
     rig.place(0.15, velocity=0.3)
@@ -103,14 +102,14 @@ def test_cancelling_ends_the_goal_and_holds(make_rig: Any) -> None:
     assert rig.commanded() == 0.15
 
 
-def test_cancelling_needs_no_tick(rig: Any) -> None:
+def test_cancelling_needs_no_tick(rig):
     rig.goal(0.4)
     rig.controller.cancel_goal("goal")
     rig.controller.serve_requests()
     assert rig.result.outcome is GoalOutcome.CANCELED
 
 
-def test_cancelling_a_goal_that_has_ended_changes_nothing(make_rig: Any) -> None:
+def test_cancelling_a_goal_that_has_ended_changes_nothing(make_rig):
     rig = make_rig()
     rig.place(0.4)
     rig.goal(0.4)
@@ -122,7 +121,7 @@ def test_cancelling_a_goal_that_has_ended_changes_nothing(make_rig: Any) -> None
     assert rig.commanded() == 0.6
 
 
-def test_a_new_goal_cancels_the_one_before(rig: Any) -> None:
+def test_a_new_goal_cancels_the_one_before(rig):
     rig.goal(0.4, "first")
     rig.tick()
     rig.goal(0.6)
@@ -134,7 +133,7 @@ def test_a_new_goal_cancels_the_one_before(rig: Any) -> None:
     assert rig.result.reached_goal
 
 
-def test_deactivation_aborts_the_goal(rig: Any) -> None:
+def test_deactivation_aborts_the_goal(rig):
     rig.goal(0.4)
     rig.tick()
     rig.switch("", "gripper")
@@ -142,7 +141,7 @@ def test_deactivation_aborts_the_goal(rig: Any) -> None:
     assert (rig.result.stalled, rig.result.reached_goal) == (False, False)
 
 
-def test_deactivation_ends_goals_that_no_cycle_has_seen(rig: Any) -> None:
+def test_deactivation_ends_goals_that_no_cycle_has_seen(rig):
     rig.goal(0.4, "first")
     rig.goal(0.5, "second")
     rig.switch("", "gripper")
@@ -152,7 +151,7 @@ def test_deactivation_ends_goals_that_no_cycle_has_seen(rig: Any) -> None:
     }
 
 
-def test_a_goal_whose_client_is_gone_is_completed(rig: Any) -> None:
+def test_a_goal_whose_client_is_gone_is_completed(rig):
     rig.controller.sink = None
     rig.goal(0.4)
     rig.place(0.4)
@@ -163,7 +162,7 @@ def test_a_goal_whose_client_is_gone_is_completed(rig: Any) -> None:
     assert list(rig.sink.results) == ["goal"]
 
 
-def test_an_inactive_controller_takes_no_goal(make_rig: Any) -> None:
+def test_an_inactive_controller_takes_no_goal(make_rig):
     rig = make_rig(activate=False)
     request = GripperRequest("goal", [0.4])
     refusal = "Can't accept new action goals. Controller is not running."
@@ -171,7 +170,7 @@ def test_an_inactive_controller_takes_no_goal(make_rig: Any) -> None:
     assert rig.controller.submit_goal(request) == GripperResult(GoalOutcome.ABORTED, refusal)
 
 
-def test_every_activation_is_reported_and_starts_at_the_joints_position(make_rig: Any) -> None:
+def test_every_activation_is_reported_and_starts_at_the_joints_position(make_rig):
     rig = make_rig(activate=False)
     assert rig.sink.openings == 0
     rig.place(0.2)
@@ -211,14 +210,12 @@ def test_every_activation_is_reported_and_starts_at_the_joints_position(make_rig
         ),
     ],
 )
-def test_a_goal_with_a_fault_is_refused_with_a_sentence(
-    make_rig: Any, caplog: pytest.LogCaptureFixture, request_: GripperRequest, sentence: str
-) -> None:
+def test_a_goal_with_a_fault_is_refused_with_a_sentence(make_rig, caplog, request_, sentence):
     assert make_rig().controller.check_goal(request_) == sentence
     assert sentence in caplog.messages
 
 
-def test_a_joint_whose_velocity_is_not_known_is_not_called_stalled(rig: Any) -> None:
+def test_a_joint_whose_velocity_is_not_known_is_not_called_stalled(rig):
     rig.place(0.0, velocity=math.nan)
     rig.goal(0.4)
     rig.run(2.0)

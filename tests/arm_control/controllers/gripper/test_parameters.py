@@ -1,7 +1,5 @@
 """Names, types, defaults and rules of the parameters, as a real controller has them."""
 
-from typing import Any
-
 import pytest
 
 from arm_control.controllers.gripper.parameters import EffortGripperParameters
@@ -43,21 +41,21 @@ PARALLEL = {
         ("parallel_gripper_action_controller/GripperActionController", PARALLEL),
     ],
 )
-def test_they_are_those_of_a_real_one(type_name: str, expected: dict[str, Any]) -> None:
+def test_they_are_those_of_a_real_one(type_name, expected):
     specs = controller_class(type_name).parameter_specs({"joint": "grip"})
     assert {spec.name: (spec.default, spec.read_only) for spec in specs} == expected
 
 
-def test_without_a_joint_there_are_no_gains() -> None:
+def test_without_a_joint_there_are_no_gains():
     assert {spec.name for spec in specs_of(EffortGripperParameters, given={})} == set(COMMON)
 
 
-def test_gains_are_those_of_the_joint() -> None:
+def test_gains_are_those_of_the_joint():
     parameters = build_parameters(EffortGripperParameters, {"joint": "grip", "gains.grip.p": 3})
     assert (parameters.joint, parameters.pid_gains.p) == ("grip", 3.0)
     assert (parameters.pid_gains.i_max, parameters.pid_gains.i_min) == (0.0, -0.0)
 
 
-def test_gains_of_another_joint_are_unknown() -> None:
+def test_gains_of_another_joint_are_unknown():
     with pytest.raises(ParameterError, match=r"unknown parameter gains\.j0\.p"):
         build_parameters(EffortGripperParameters, {"joint": "grip", "gains.j0.p": 3.0})

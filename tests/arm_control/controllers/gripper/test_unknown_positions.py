@@ -1,7 +1,6 @@
 """A driver that does not know where the joint is, for one cycle or permanently."""
 
 from math import isnan, nan
-from typing import Any
 
 import pytest
 
@@ -10,7 +9,7 @@ from arm_control.controllers.goals import GoalOutcome
 POSITION = "position_controllers/GripperActionController"
 
 
-def test_a_cancel_holds_the_last_known_position(make_rig: Any) -> None:
+def test_a_cancel_holds_the_last_known_position(make_rig):
     rig = make_rig(POSITION)
     rig.goal(0.4)
     rig.tick(3)
@@ -26,7 +25,7 @@ def test_a_cancel_holds_the_last_known_position(make_rig: Any) -> None:
     assert rig.commanded() == 0.2
 
 
-def test_an_activation_holds_the_position_as_soon_as_it_is_known(make_rig: Any) -> None:
+def test_an_activation_holds_the_position_as_soon_as_it_is_known(make_rig):
     rig = make_rig(POSITION, activate=False)
     rig.place(nan)
     rig.switch("gripper")
@@ -40,7 +39,7 @@ def test_an_activation_holds_the_position_as_soon_as_it_is_known(make_rig: Any) 
     assert rig.commanded() == 0.2
 
 
-def test_what_was_seen_before_an_activation_does_not_count(make_rig: Any) -> None:
+def test_what_was_seen_before_an_activation_does_not_count(make_rig):
     rig = make_rig(POSITION)
     rig.place(0.2)
     rig.tick()
@@ -55,9 +54,7 @@ def test_what_was_seen_before_an_activation_does_not_count(make_rig: Any) -> Non
 @pytest.mark.parametrize(
     ("position", "velocity", "name"), [(nan, 0.0, "grip/position"), (0.4, nan, "grip/velocity")]
 )
-def test_no_goal_succeeds_on_a_state_that_is_not_a_number(
-    rig: Any, position: float, velocity: float, name: str
-) -> None:
+def test_no_goal_succeeds_on_a_state_that_is_not_a_number(rig, position, velocity, name):
     rig.set(allow_stalling=True)
     rig.goal(0.4)
     rig.place(position, velocity)
@@ -67,7 +64,7 @@ def test_no_goal_succeeds_on_a_state_that_is_not_a_number(
     assert f"state {name} is not a number" in rig.result.message
 
 
-def test_one_cycle_without_a_number_does_not_end_a_goal(rig: Any) -> None:
+def test_one_cycle_without_a_number_does_not_end_a_goal(rig):
     rig.place(0.2, velocity=0.1)
     rig.goal(0.4)
     rig.place(nan, nan)

@@ -1,7 +1,6 @@
 """The broadcaster's core, with a sink that remembers."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -76,21 +75,21 @@ def start() -> Start:
     return start_broadcaster
 
 
-def test_it_claims_nothing_and_reads_everything(start: Start) -> None:
+def test_it_claims_nothing_and_reads_everything(start):
     manager, _ = start()
     (status,) = manager.list_controllers()
     assert status.claimed_interfaces == status.required_command_interfaces == ()
     assert len(status.required_state_interfaces) == 12
 
 
-def test_it_publishes_at_every_tick_with_the_time_of_the_state(start: Start) -> None:
+def test_it_publishes_at_every_tick_with_the_time_of_the_state(start):
     manager, sink = start(hardware=fake_hardware(("j0",), initial_positions={"j0": 0.5}))
     manager.publish(1.25, 0.01)
     manager.publish(1.26, 0.01)
     assert sink.published == [(1.25, [0.5, 0.0, 0.0]), (1.26, [0.5, 0.0, 0.0])]
 
 
-def test_the_order_is_alphabetical_for_movable_joints_of_the_description(start: Start) -> None:
+def test_the_order_is_alphabetical_for_movable_joints_of_the_description(start):
     hardware = fake_hardware(("zeta", "alpha", "welded", "stranger"))
     _, sink = start(hardware=hardware, robot_description=URDF)
     assert sink.layouts[0].joints == ("alpha", "zeta")
@@ -103,23 +102,19 @@ def test_the_order_is_alphabetical_for_movable_joints_of_the_description(start: 
 
 
 @pytest.mark.parametrize("description", ["", "<robot", URDF])
-def test_without_a_usable_description_or_filter_all_joints_stand_as_they_come(
-    start: Start, description: str
-) -> None:
+def test_without_a_usable_description_or_filter_all_joints_stand_as_they_come(start, description):
     parameters = Parameters(use_urdf_to_filter=description != URDF)
     hardware = fake_hardware(("zeta", "stranger", "alpha"))
     _, sink = start(parameters, hardware, description)
     assert sink.layouts[0].joints == ("zeta", "stranger", "alpha")
 
 
-def test_a_description_that_cannot_be_used_is_logged(
-    start: Start, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_description_that_cannot_be_used_is_logged(start, caplog):
     start(robot_description="<robot")
     assert "robot description cannot be used, so all joints are published" in caplog.text
 
 
-def test_joints_and_interfaces_choose_and_order(start: Start) -> None:
+def test_joints_and_interfaces_choose_and_order(start):
     parameters = Parameters(joints=("j2", "j0"), interfaces=("position", "velocity"))
     manager, sink = start(parameters)
     assert manager.list_controllers()[0].required_state_interfaces == (
@@ -140,9 +135,7 @@ def test_joints_and_interfaces_choose_and_order(start: Start) -> None:
         (Parameters(interfaces=("position",)), "joints"),
     ],
 )
-def test_joints_or_interfaces_alone_choose_nothing(
-    start: Start, caplog: pytest.LogCaptureFixture, parameters: Parameters, empty: str
-) -> None:
+def test_joints_or_interfaces_alone_choose_nothing(start, caplog, parameters, empty):
     manager, sink = start(parameters)
     assert f"'{empty}' parameter is empty" in caplog.text
     assert sink.layouts[0].joints == ("j0", "j1", "j2", "j3")
@@ -157,9 +150,7 @@ def test_joints_or_interfaces_alone_choose_nothing(
         (("j8", "j9"), ("torque",), "j8/torque"),
     ],
 )
-def test_a_missing_interface_fails_the_activation(
-    start: Start, joints: tuple[str, ...], interfaces: tuple[str, ...], missing: str
-) -> None:
+def test_a_missing_interface_fails_the_activation(start, joints, interfaces, missing):
     manager, _ = start(Parameters(joints=joints, interfaces=interfaces), expect=False)
     result = manager.switch_controller(SwitchRequest(("jsb",)))
     assert result.message == (
@@ -168,21 +159,19 @@ def test_a_missing_interface_fails_the_activation(
     )
 
 
-def test_no_state_interface_at_all_fails_the_activation(
-    start: Start, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_no_state_interface_at_all_fails_the_activation(start, caplog):
     start(hardware=fake_hardware(state_interfaces=()), expect=False)
     assert "None of requested interfaces exist. Controller will not run." in caplog.text
 
 
-def test_extra_joints_are_published_at_zero(start: Start) -> None:
+def test_extra_joints_are_published_at_zero(start):
     manager, sink = start(Parameters(extra_joints=("wheel",)), fake_hardware(("j0",)))
     manager.publish(0.0, 0.01)
     assert sink.layouts[0].joints == ("j0", "wheel")
     assert sink.published[0][1] == [0.0] * 6
 
 
-def test_another_interface_can_be_shown_as_position(start: Start) -> None:
+def test_another_interface_can_be_shown_as_position(start):
     joint = JointInfo("j0", state_interfaces=(InterfaceInfo("measured", initial_value=3.0),))
     hardware = FakeHardware(HardwareInfo("H", "system", "x/Y", joints=(joint,)))
     parameters = Parameters(map_interface_to_joint_state=InterfaceMap(position="measured"))
@@ -192,9 +181,7 @@ def test_another_interface_can_be_shown_as_position(start: Start) -> None:
     assert sink.layouts[0].components == (("j0", ("position",)),)
 
 
-def test_an_interface_that_is_not_a_number_is_left_out(
-    start: Start, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_an_interface_that_is_not_a_number_is_left_out(start, caplog):
     switched = InterfaceInfo("switched", data_type="bool")
     joint = JointInfo("j0", state_interfaces=(switched, InterfaceInfo("position", 0.5)))
     tool = JointInfo("tool", state_interfaces=(switched,))
@@ -210,7 +197,7 @@ def test_an_interface_that_is_not_a_number_is_left_out(
     ]
 
 
-def test_a_read_that_fails_does_not_mix_up_the_joints(start: Start) -> None:
+def test_a_read_that_fails_does_not_mix_up_the_joints(start):
     positions = {f"j{i}": i / 10 for i in range(4)}
     hardware = fake_hardware(initial_positions=positions)
     manager, sink = start(hardware=hardware)
@@ -223,9 +210,7 @@ def test_a_read_that_fails_does_not_mix_up_the_joints(start: Start) -> None:
 
 
 @pytest.mark.parametrize("other", ["velocity", "measured"])
-def test_a_listed_standard_interface_is_not_mapped(
-    start: Start, caplog: pytest.LogCaptureFixture, other: str
-) -> None:
+def test_a_listed_standard_interface_is_not_mapped(start, caplog, other):
     parameters = Parameters(
         joints=("j0",),
         interfaces=("position", "velocity"),
@@ -236,7 +221,7 @@ def test_a_listed_standard_interface_is_not_mapped(
     assert f"interface '{other}' is not shown as 'position'" in caplog.text
 
 
-def test_interfaces_without_joints_do_not_keep_another_one_from_being_shown(start: Start) -> None:
+def test_interfaces_without_joints_do_not_keep_another_one_from_being_shown(start):
     states = (InterfaceInfo("measured", initial_value=3.0),)
     joint = JointInfo("j0", state_interfaces=states)
     hardware = FakeHardware(HardwareInfo("H", "system", "x/Y", joints=(joint,)))
@@ -247,13 +232,13 @@ def test_interfaces_without_joints_do_not_keep_another_one_from_being_shown(star
     assert sink.layouts[0].components == (("j0", ("position",)),)
 
 
-def test_a_new_activation_rebuilds_the_messages(start: Start) -> None:
+def test_a_new_activation_rebuilds_the_messages(start):
     manager, sink = start()
     manager.switch_controller(SwitchRequest(("jsb",), ("jsb",)))
     assert len(sink.layouts) == 2
 
 
-def test_it_works_without_a_sink(bench: Any, make: Any) -> None:
+def test_it_works_without_a_sink(bench, make):
     make(JointStateBroadcaster, Parameters())
     bench.manager.switch_controller(SwitchRequest(("it",)))
     bench.tick()

@@ -1,21 +1,15 @@
 """A goal without tolerances ends by time, but never where a joint has not followed."""
 
-from collections.abc import Callable
-from typing import Any
-
 import pytest
 
 from arm_control.controllers.joint_trajectory.goals import ErrorCode, GoalOutcome, JointTolerance
 
-MakeRig = Callable[..., Any]
 POINTS = [(0.5, [0.0, 0.6, 0.0])]
 OFF = [JointTolerance("j1", -1.0)]
 
 
 @pytest.mark.parametrize("options", [{}, {"goal_tolerance": OFF}, {"goal_time_tolerance_s": -1.0}])
-def test_a_joint_that_rests_far_from_its_end_has_not_arrived(
-    make_rig: MakeRig, options: dict[str, Any]
-):
+def test_a_joint_that_rests_far_from_its_end_has_not_arrived(make_rig, options):
     rig = make_rig()
     rig.moves = False
     rig.place([0.0, 0.3, 0.0])
@@ -34,7 +28,7 @@ def test_a_joint_that_rests_far_from_its_end_has_not_arrived(
     assert rig.commanded().tolist() == pytest.approx([0.0, 0.3, 0.0])
 
 
-def test_a_joint_that_is_late_but_comes_closer_succeeds_by_time(make_rig: MakeRig):
+def test_a_joint_that_is_late_but_comes_closer_succeeds_by_time(make_rig):
     rig = make_rig()
     rig.moves = False
     rig.goal(POINTS)
@@ -46,7 +40,7 @@ def test_a_joint_that_is_late_but_comes_closer_succeeds_by_time(make_rig: MakeRi
     assert rig.result.outcome is GoalOutcome.SUCCEEDED
 
 
-def test_the_error_of_a_weak_drive_does_not_matter(make_rig: MakeRig):
+def test_the_error_of_a_weak_drive_does_not_matter(make_rig):
     rig = make_rig()
     rig.moves = False
     rig.place([0.0, 0.56, 0.0])
@@ -55,9 +49,7 @@ def test_the_error_of_a_weak_drive_does_not_matter(make_rig: MakeRig):
     assert rig.result.outcome is GoalOutcome.SUCCEEDED
 
 
-def test_a_sliding_joint_is_far_from_millimetres_on(
-    make_rig: MakeRig, robot_description: Callable[..., str]
-):
+def test_a_sliding_joint_is_far_from_millimetres_on(make_rig, robot_description):
     rig = make_rig(robot_description=robot_description("prismatic"))
     rig.moves = False
     rig.goal([(0.5, [0.0, 0.02, 0.0])])
@@ -65,7 +57,7 @@ def test_a_sliding_joint_is_far_from_millimetres_on(
     assert "joint j1 does not follow: it rests 0.02 m from" in rig.result.message
 
 
-def test_a_tolerance_of_the_user_decides(make_rig: MakeRig):
+def test_a_tolerance_of_the_user_decides(make_rig):
     rig = make_rig(constraints__j1__goal=0.4)
     rig.moves = False
     rig.place([0.0, 0.3, 0.0])
@@ -74,7 +66,7 @@ def test_a_tolerance_of_the_user_decides(make_rig: MakeRig):
     assert rig.result.outcome is GoalOutcome.SUCCEEDED
 
 
-def test_a_joint_that_is_not_commanded_does_not_count(make_rig: MakeRig):
+def test_a_joint_that_is_not_commanded_does_not_count(make_rig):
     rig = make_rig(command_joints=("j0", "j2"))
     rig.moves = False
     rig.goal(POINTS)

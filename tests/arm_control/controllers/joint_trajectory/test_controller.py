@@ -1,8 +1,5 @@
 """The controller as a whole: the cases of upstream's test_trajectory_controller.cpp."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -10,9 +7,6 @@ from arm_control.controllers.controller import ControllerContext
 from arm_control.controllers.joint_trajectory.controller import JointTrajectoryController
 from arm_control.controllers.joint_trajectory.goals import ErrorCode, GoalOutcome
 from arm_control.errors import ControllerError
-
-MakeRig = Callable[..., Any]
-Interfaces = tuple[tuple[str, ...], tuple[str, ...]]
 
 START = (1.1, 2.1, 3.1)
 POINTS = [[3.3, 4.4, 6.6], [7.7, 8.8, 9.9], [10.10, 11.11, 12.12]]
@@ -24,7 +18,7 @@ def gains(**values: float) -> dict[str, float]:
 
 
 class TestActivation:
-    def test_hold_on_startup(self, make_rig: MakeRig, interfaces: Interfaces):
+    def test_hold_on_startup(self, make_rig, interfaces):
         commands, states = interfaces
         rig = make_rig(commands=commands, states=states, positions=START, **gains(p=10.0))
         rig.run(0.25)
@@ -33,13 +27,13 @@ class TestActivation:
             expected = list(START) if kind == "position" else [0.0, 0.0, 0.0]
             assert rig.commanded(kind).tolist() == expected
 
-    def test_hw_states_has_offset_first_controller_start(self, make_rig: MakeRig):
+    def test_hw_states_has_offset_first_controller_start(self, make_rig):
         rig = make_rig(positions=START)
         rig.tick()
 
         assert rig.commanded().tolist() == list(START), "no command before: measured positions"
 
-    def test_hw_states_has_offset_later_controller_start(self, make_rig: MakeRig):
+    def test_hw_states_has_offset_later_controller_start(self, make_rig):
         rig = make_rig(positions=START, activate=False)
         rig.command_before([3.1, 4.1, 5.1])
         rig.activate()
@@ -47,7 +41,7 @@ class TestActivation:
 
         assert rig.commanded().tolist() == [3.1, 4.1, 5.1]
 
-    def test_the_last_command_does_not_count_where_that_is_unwanted(self, make_rig: MakeRig):
+    def test_the_last_command_does_not_count_where_that_is_unwanted(self, make_rig):
         rig = make_rig(
             positions=START,
             activate=False,
@@ -59,7 +53,7 @@ class TestActivation:
 
         assert rig.commanded().tolist() == list(START)
 
-    def test_one_unknown_command_makes_all_of_them_count_for_nothing(self, make_rig: MakeRig):
+    def test_one_unknown_command_makes_all_of_them_count_for_nothing(self, make_rig):
         rig = make_rig(positions=START, commands=("position", "velocity"), activate=False)
         rig.command_before([3.1, 4.1, 5.1])
         rig.command_before([0.0, np.nan, 0.0], "velocity")
@@ -68,7 +62,7 @@ class TestActivation:
 
         assert rig.commanded().tolist() == list(START)
 
-    def test_a_trajectory_of_the_last_activation_is_forgotten(self, make_rig: MakeRig):
+    def test_a_trajectory_of_the_last_activation_is_forgotten(self, make_rig):
         rig = make_rig()
         rig.trajectory([(1.0, [1.0, 1.0, 1.0])])
         rig.deactivate()
@@ -81,16 +75,14 @@ class TestActivation:
         with pytest.raises(ControllerError, match="robot description"):
             JointTrajectoryController(ControllerContext("jtc", 100, "<robot"))
 
-    def test_open_loop_control_is_deprecated(
-        self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture
-    ):
+    def test_open_loop_control_is_deprecated(self, make_rig, caplog):
         make_rig(open_loop_control=True)
 
         assert "interpolate_from_desired_state" in caplog.text
 
 
 class TestDeactivation:
-    def test_positions_stay(self, make_rig: MakeRig):
+    def test_positions_stay(self, make_rig):
         rig = make_rig()
         rig.trajectory([(1.0, [1.0, 2.0, 3.0])])
         rig.run(0.5)
@@ -99,7 +91,7 @@ class TestDeactivation:
 
         assert rig.commanded().tolist() == before.tolist()
 
-    def test_everything_else_becomes_zero(self, make_rig: MakeRig, interfaces: Interfaces):
+    def test_everything_else_becomes_zero(self, make_rig, interfaces):
         commands, states = interfaces
         rig = make_rig(commands=commands, states=states, **gains(p=1.0))
         rig.moves = False
@@ -111,7 +103,7 @@ class TestDeactivation:
             if kind != "position":
                 assert rig.commanded(kind).tolist() == [0.0, 0.0, 0.0]
 
-    def test_requests_are_silently_dropped(self, make_rig: MakeRig):
+    def test_requests_are_silently_dropped(self, make_rig):
         rig = make_rig()
         rig.deactivate()
         rig.trajectory([(1.0, [1.0, 2.0, 3.0])])
@@ -122,9 +114,7 @@ class TestDeactivation:
 
 
 class TestFollowing:
-    def test_correct_initialization_and_three_points(
-        self, make_rig: MakeRig, interfaces: Interfaces
-    ):
+    def test_correct_initialization_and_three_points(self, make_rig, interfaces):
         commands, states = interfaces
         rig = make_rig(commands=commands, states=states, positions=START)
         rig.moves = False
@@ -138,21 +128,21 @@ class TestFollowing:
         if "position" in commands:
             assert rig.commanded().tolist() == POINTS[2]
 
-    def test_test_jumbled_joint_order(self, make_rig: MakeRig):
+    def test_test_jumbled_joint_order(self, make_rig):
         rig = make_rig()
         rig.trajectory([(0.25, [2.0, 3.0, 1.0])], joints=("j1", "j2", "j0"))
         rig.run(0.5)
 
         assert rig.measured().tolist() == [1.0, 2.0, 3.0]
 
-    def test_test_partial_joint_list(self, make_rig: MakeRig):
+    def test_test_partial_joint_list(self, make_rig):
         rig = make_rig(positions=START, allow_partial_joints_goal=True)
         rig.trajectory([(0.25, [5.0, 4.0])], joints=("j2", "j0"))
         rig.run(0.5)
 
         assert rig.measured().tolist() == [4.0, START[1], 5.0]
 
-    def test_a_partial_list_holds_what_is_commanded_not_what_is_measured(self, make_rig: MakeRig):
+    def test_a_partial_list_holds_what_is_commanded_not_what_is_measured(self, make_rig):
         rig = make_rig(allow_partial_joints_goal=True)
         rig.trajectory([(0.25, [1.0, 1.0, 1.0])])
         rig.run(0.5)
@@ -163,9 +153,7 @@ class TestFollowing:
 
         assert rig.commanded().tolist() == [1.0, 1.0, 5.0]
 
-    def test_a_partial_list_holds_what_is_measured_without_position_commands(
-        self, make_rig: MakeRig
-    ):
+    def test_a_partial_list_holds_what_is_measured_without_position_commands(self, make_rig):
         rig = make_rig(
             commands=("velocity",), positions=START, allow_partial_joints_goal=True, **gains(p=1.0)
         )
@@ -174,9 +162,7 @@ class TestFollowing:
 
         assert rig.sink.state.reference[:3, 0].tolist() == [START[0], 0.0, 0.0]
 
-    def test_test_partial_joint_list_not_allowed(
-        self, make_rig: MakeRig, make_request: Callable[..., Any]
-    ):
+    def test_test_partial_joint_list_not_allowed(self, make_rig, make_request):
         rig = make_rig()
         refusal = rig.controller.submit_trajectory(make_request([(0.25, [5.0])], ["j2"]))
         rig.run(0.5)
@@ -184,14 +170,14 @@ class TestFollowing:
         assert refusal is not None
         assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
 
-    def test_missing_positions_message_accepted(self, make_rig: MakeRig):
+    def test_missing_positions_message_accepted(self, make_rig):
         rig = make_rig(allow_integration_in_goal_trajectories=True)
         rig.trajectory([(1.0, [], [1.0, 1.0, 1.0]), (2.0, [], [0.0, 0.0, 0.0])])
         rig.run(2.1)
 
         assert rig.measured() == pytest.approx([1.0, 1.0, 1.0])
 
-    def test_test_trajectory_replace(self, make_rig: MakeRig):
+    def test_test_trajectory_replace(self, make_rig):
         rig = make_rig(allow_partial_joints_goal=True)
         rig.trajectory([(0.5, [2.0, 3.0, 4.0])])
         rig.run(0.6)
@@ -200,7 +186,7 @@ class TestFollowing:
 
         assert rig.measured().tolist() == [1.5, 3.0, 4.0]
 
-    def test_a_running_trajectory_is_replaced(self, make_rig: MakeRig):
+    def test_a_running_trajectory_is_replaced(self, make_rig):
         rig = make_rig()
         rig.trajectory([(1.0, [2.0, 3.0, 4.0])])
         rig.run(0.5)
@@ -209,7 +195,7 @@ class TestFollowing:
 
         assert rig.measured().tolist() == [0.0, 0.0, 0.0]
 
-    def test_test_ignore_old_trajectory(self, make_rig: MakeRig, make_request: Callable[..., Any]):
+    def test_test_ignore_old_trajectory(self, make_rig, make_request):
         rig = make_rig()
         rig.trajectory([(0.5, [2.0, 3.0, 4.0]), (1.0, [4.0, 5.0, 6.0])])
         rig.run(0.5)
@@ -222,7 +208,7 @@ class TestFollowing:
 
     @pytest.mark.parametrize("reactivated", [False, True])
     def test_an_old_trajectory_before_the_first_update_is_ignored_by_it(
-        self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture, reactivated: bool
+        self, make_rig, caplog, reactivated
     ):
         rig = make_rig(positions=START)
         if reactivated:
@@ -237,7 +223,7 @@ class TestFollowing:
         assert caplog.text.count("that ends in the past") == 1
         assert rig.commanded().tolist() == list(START)
 
-    def test_it_does_not_end_the_hold_of_the_last_command(self, make_rig: MakeRig):
+    def test_it_does_not_end_the_hold_of_the_last_command(self, make_rig):
         rig = make_rig(positions=START, activate=False)
         rig.command_before([1.2, 2.2, 3.2])
         rig.activate()
@@ -246,9 +232,7 @@ class TestFollowing:
 
         assert rig.commanded().tolist() == [1.2, 2.2, 3.2]
 
-    def test_a_goal_that_is_old_at_the_first_update_is_aborted_with_the_reason(
-        self, make_rig: MakeRig
-    ):
+    def test_a_goal_that_is_old_at_the_first_update_is_aborted_with_the_reason(self, make_rig):
         rig = make_rig(positions=START)
         rig.goal([(0.5, [-1.0, -2.0, -3.0])], stamp_s=rig.time_s - 0.6)
         assert rig.result is None
@@ -262,9 +246,7 @@ class TestFollowing:
         )
         assert rig.commanded().tolist() == list(START)
 
-    def test_before_the_first_update_one_that_has_not_ended_yet_is_followed(
-        self, make_rig: MakeRig
-    ):
+    def test_before_the_first_update_one_that_has_not_ended_yet_is_followed(self, make_rig):
         rig = make_rig()
         rig.goal([(0.5, [1.0, 2.0, 3.0]), (1.0, [2.0, 4.0, 6.0])], stamp_s=rig.time_s - 0.6)
         rig.run(0.5)
@@ -272,7 +254,7 @@ class TestFollowing:
         assert rig.measured().tolist() == [2.0, 4.0, 6.0]
         assert rig.result.outcome is GoalOutcome.SUCCEEDED
 
-    def test_test_ignore_partial_old_trajectory(self, make_rig: MakeRig):
+    def test_test_ignore_partial_old_trajectory(self, make_rig):
         rig = make_rig()
         rig.trajectory([(0.5, [2.0, 3.0, 4.0]), (1.0, [4.0, 5.0, 6.0])])
         rig.run(0.5)
@@ -286,7 +268,7 @@ class TestFollowing:
         rig.run(0.5)
         assert rig.measured().tolist() == [-2.0, -4.0, -6.0]
 
-    def test_a_trajectory_for_the_future_moves_at_once(self, make_rig: MakeRig):
+    def test_a_trajectory_for_the_future_moves_at_once(self, make_rig):
         rig = make_rig()
         rig.trajectory([(1.0, [1.0, 2.0, 3.0])], stamp_s=rig.time_s + 1.01)
         rig.tick()
@@ -296,7 +278,7 @@ class TestFollowing:
         rig.run(1.0)
         assert rig.measured().tolist() == [1.0, 2.0, 3.0]
 
-    def test_the_newest_of_several_trajectories_is_executed(self, make_rig: MakeRig):
+    def test_the_newest_of_several_trajectories_is_executed(self, make_rig):
         rig = make_rig()
         for value in range(5):
             rig.trajectory([(0.1, [value, value, value])])
@@ -304,7 +286,7 @@ class TestFollowing:
 
         assert rig.measured().tolist() == [4.0, 4.0, 4.0]
 
-    def test_interpolation_method_none(self, make_rig: MakeRig):
+    def test_interpolation_method_none(self, make_rig):
         rig = make_rig(interpolation_method="none")
         rig.trajectory([(0.1, [1.0] * 3), (0.2, [2.0] * 3)])
         rig.run(0.1)
@@ -313,7 +295,7 @@ class TestFollowing:
         rig.tick()
         assert rig.sink.state.reference[0].tolist() == [2.0, 2.0, 2.0]
 
-    def test_fewer_command_joints_than_joints(self, make_rig: MakeRig):
+    def test_fewer_command_joints_than_joints(self, make_rig):
         rig = make_rig(command_joints=("j2", "j0"), positions=START)
         rig.trajectory([(0.1, [5.0, 6.0, 7.0])])
         rig.run(0.2)
@@ -323,7 +305,7 @@ class TestFollowing:
         assert rig.command("j2/position") == 7.0
         assert np.isnan(rig.sink.state.output[0, 1])
 
-    def test_a_reset_of_the_simulation_does_not_disturb(self, make_rig: MakeRig):
+    def test_a_reset_of_the_simulation_does_not_disturb(self, make_rig):
         rig = make_rig()
         rig.goal([(1.0, [1.0, 2.0, 3.0])])
         rig.run(0.5)
@@ -335,7 +317,7 @@ class TestFollowing:
 
 
 class TestStartOfTrajectories:
-    def test_test_jump_when_state_tracking_error_updated(self, make_rig: MakeRig):
+    def test_test_jump_when_state_tracking_error_updated(self, make_rig):
         rig = make_rig()
         rig.trajectory([(1.0, [3.3, 4.4, 5.5])])
         rig.run(1.1)
@@ -347,7 +329,7 @@ class TestStartOfTrajectories:
         assert rig.commanded()[0] == pytest.approx(3.0 + 3.6 * 0.01)
 
     @pytest.mark.parametrize("name", ["interpolate_from_desired_state", "open_loop_control"])
-    def test_test_no_jump_when_state_tracking_error_not_updated(self, make_rig: MakeRig, name: str):
+    def test_test_no_jump_when_state_tracking_error_not_updated(self, make_rig, name):
         rig = make_rig(**{name: True})
         rig.trajectory([(1.0, [3.3, 4.4, 5.5])])
         rig.run(1.1)
@@ -359,7 +341,7 @@ class TestStartOfTrajectories:
         assert rig.commanded()[0] == pytest.approx(3.3 + 3.3 * 0.01)
 
     @pytest.mark.parametrize("first_s", [0.0, 0.005, 0.3])
-    def test_replacement_without_a_step(self, make_rig: MakeRig, first_s: float):
+    def test_replacement_without_a_step(self, make_rig, first_s):
         rig = make_rig(commands=("position", "velocity"), smooth_replacement_time=0.2)
         rig.trajectory([(1.0, [1.0] * 3)])
         rig.run(0.5)
@@ -371,7 +353,7 @@ class TestStartOfTrajectories:
         assert rig.commanded() == pytest.approx(position + 0.01 * velocity, abs=0.005)
         assert rig.commanded("velocity") == pytest.approx(velocity, abs=0.5)
 
-    def test_a_smoothly_replaced_trajectory_still_arrives(self, make_rig: MakeRig):
+    def test_a_smoothly_replaced_trajectory_still_arrives(self, make_rig):
         rig = make_rig(smooth_replacement_time=0.2)
         rig.goal([(1.0, [1.0, 2.0, 3.0])], "first")
         rig.run(0.5)
@@ -381,7 +363,7 @@ class TestStartOfTrajectories:
         assert rig.sink.results["second"].code == 0
         assert rig.measured() == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
 
-    def test_without_it_the_velocity_steps(self, make_rig: MakeRig):
+    def test_without_it_the_velocity_steps(self, make_rig):
         rig = make_rig(commands=("position", "velocity"))
         rig.trajectory([(1.0, [1.0] * 3)])
         rig.run(0.5)

@@ -1,13 +1,7 @@
 """Errors, and the PID controllers that act on them."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
-
-MakeRig = Callable[..., Any]
-Interfaces = tuple[tuple[str, ...], tuple[str, ...]]
 
 START = (1.1, 2.1, 3.1)
 POINTS = [[3.3, 4.4, 6.6], [7.7, 8.8, 9.9], [10.10, 11.11, 12.12]]
@@ -20,9 +14,7 @@ def gains(**values: float) -> dict[str, float]:
 
 class TestErrors:
     @pytest.mark.parametrize("joint_type", ["revolute", "continuous"])
-    def test_position_error_angle_wraparound(
-        self, make_rig: MakeRig, robot_description: Callable[..., str], joint_type: str
-    ):
+    def test_position_error_angle_wraparound(self, make_rig, robot_description, joint_type):
         rig = make_rig(positions=START, robot_description=robot_description(joint_type))
         rig.moves = False
         rig.trajectory(THREE_POINTS)
@@ -35,9 +27,7 @@ class TestErrors:
         assert rig.sink.state.error[0] == pytest.approx(difference)
         assert rig.sink.state.reference[0] == pytest.approx(POINTS[0])
 
-    def test_a_continuous_joint_takes_the_shortest_rotation(
-        self, make_rig: MakeRig, robot_description: Callable[..., str]
-    ):
+    def test_a_continuous_joint_takes_the_shortest_rotation(self, make_rig, robot_description):
         rig = make_rig(positions=(0.0, 0.0, 3.1), robot_description=robot_description("continuous"))
         rig.moves = False
         rig.trajectory([(1.0, [0.0, 0.0, 6.6])])
@@ -47,7 +37,7 @@ class TestErrors:
         assert rig.sink.state.reference[1, 2] == pytest.approx(6.6 - 3.1 - 2.0 * np.pi)
 
     def test_the_pid_controller_of_a_continuous_joint_takes_the_shortest_rotation(
-        self, make_rig: MakeRig, robot_description: Callable[..., str]
+        self, make_rig, robot_description
     ):
         rig = make_rig(
             commands=("velocity",),
@@ -63,7 +53,7 @@ class TestErrors:
         assert rig.commanded("velocity") == pytest.approx(10.0 * rig.sink.state.error[0])
         assert rig.commanded("velocity")[2] < 0.0
 
-    def test_velocity_error(self, make_rig: MakeRig, interfaces: Interfaces):
+    def test_velocity_error(self, make_rig, interfaces):
         commands, states = interfaces
         rig = make_rig(commands=commands, states=states)
         rig.moves = False
@@ -75,7 +65,7 @@ class TestErrors:
             counts = "velocity" in commands or "effort" in commands
             assert error["velocity"] == pytest.approx([1.0, 2.0, 3.0] if counts else [0.0] * 3)
 
-    def test_state_topic_consistency(self, make_rig: MakeRig, interfaces: Interfaces):
+    def test_state_topic_consistency(self, make_rig, interfaces):
         commands, states = interfaces
         rig = make_rig(commands=commands, states=states)
         rig.trajectory(THREE_POINTS)
@@ -94,7 +84,7 @@ class TestErrors:
 
 
 class TestPid:
-    def test_use_closed_loop_pid(self, make_rig: MakeRig):
+    def test_use_closed_loop_pid(self, make_rig):
         rig = make_rig(commands=("effort",), positions=START, **gains(p=10.0))
         rig.moves = False
         rig.trajectory([(1.0, [2.1, 2.1, 2.1])])
@@ -102,7 +92,7 @@ class TestPid:
 
         assert rig.commanded("effort") == pytest.approx([1.0, 0.0, -1.0])
 
-    def test_velocity_feedforward(self, make_rig: MakeRig):
+    def test_velocity_feedforward(self, make_rig):
         rig = make_rig(commands=("velocity",), **gains(ff_velocity_scale=0.5))
         rig.moves = False
         rig.trajectory([(1.0, [1.0, 2.0, -3.0])])
@@ -110,7 +100,7 @@ class TestPid:
 
         assert rig.commanded("velocity") == pytest.approx([0.5, 1.0, -1.5])
 
-    def test_open_loop_velocities_are_handed_through(self, make_rig: MakeRig):
+    def test_open_loop_velocities_are_handed_through(self, make_rig):
         rig = make_rig(commands=("velocity",), open_loop_control=True, **gains(p=99.0))
         rig.moves = False
         rig.trajectory([(1.0, [1.0, 2.0, -3.0])])
@@ -118,7 +108,7 @@ class TestPid:
 
         assert rig.commanded("velocity") == pytest.approx([1.0, 2.0, -3.0])
 
-    def test_effort_of_the_trajectory_is_added(self, make_rig: MakeRig):
+    def test_effort_of_the_trajectory_is_added(self, make_rig):
         rig = make_rig(commands=("effort",))
         rig.moves = False
         rig.trajectory([(1.0, [0.0] * 3, (), (), [1.0, 2.0, 3.0]), (2.0, [0.0] * 3)])
@@ -127,7 +117,7 @@ class TestPid:
 
         assert rig.commanded("effort") == pytest.approx([1.0, 2.0, 3.0])
 
-    def test_effort_beside_positions_is_handed_through(self, make_rig: MakeRig):
+    def test_effort_beside_positions_is_handed_through(self, make_rig):
         rig = make_rig(commands=("position", "effort"), **gains(p=99.0))
         rig.moves = False
         rig.trajectory([(1.0, [1.0] * 3, (), (), [1.0, 2.0, 3.0]), (2.0, [1.0] * 3)])
@@ -136,7 +126,7 @@ class TestPid:
 
         assert rig.commanded("effort") == pytest.approx([1.0, 2.0, 3.0])
 
-    def test_the_integral_is_reset_by_each_activation(self, make_rig: MakeRig):
+    def test_the_integral_is_reset_by_each_activation(self, make_rig):
         rig = make_rig(commands=("effort",), **gains(i=1.0))
         rig.moves = False
         rig.trajectory([(0.0, [1.0] * 3)])

@@ -1,8 +1,5 @@
 """What the clients of goals receive: refusals, feedback, and results at any speed."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -13,8 +10,6 @@ from arm_control.controllers.joint_trajectory.goals import (
     GoalResult,
 )
 
-MakeRig = Callable[..., Any]
-
 SUCCESS = GoalResult(GoalOutcome.SUCCEEDED, ErrorCode.SUCCESSFUL, "Goal successfully reached!")
 ONE_POINT = [(0.5, [1.0, 2.0, 3.0])]
 
@@ -24,7 +19,7 @@ def aborted(code: ErrorCode, message: str) -> GoalResult:
 
 
 class TestRefusal:
-    def test_while_not_running(self, make_rig: MakeRig, make_request: Callable[..., Any]):
+    def test_while_not_running(self, make_rig, make_request):
         rig = make_rig(activate=False)
         refusal = rig.controller.check_goal(make_request(ONE_POINT))
 
@@ -33,15 +28,13 @@ class TestRefusal:
             ErrorCode.INVALID_GOAL
         )
 
-    def test_after_deactivation(self, make_rig: MakeRig, make_request: Callable[..., Any]):
+    def test_after_deactivation(self, make_rig, make_request):
         rig = make_rig()
         rig.deactivate()
 
         assert rig.controller.check_goal(make_request(ONE_POINT)) is not None
 
-    def test_has_a_reason_for_accepted_invalid_goals(
-        self, make_rig: MakeRig, make_request: Callable[..., Any]
-    ):
+    def test_has_a_reason_for_accepted_invalid_goals(self, make_rig, make_request):
         rig = make_rig(reject_with_reason=True)
         bad = make_request([(1.0, [1.0])], ["j9"])
 
@@ -51,23 +44,19 @@ class TestRefusal:
         )
         assert not rig.sink.results, "the caller ends the goal, not the sink"
 
-    def test_is_logged(
-        self, make_rig: MakeRig, make_request: Callable[..., Any], caplog: pytest.LogCaptureFixture
-    ):
+    def test_is_logged(self, make_rig, make_request, caplog):
         make_rig().controller.check_goal(make_request([]))
 
         assert "Empty trajectory received." in caplog.text
 
     @pytest.mark.parametrize("allowed", [True, False])
-    def test_allow_nonzero_velocity(
-        self, make_rig: MakeRig, make_request: Callable[..., Any], allowed: bool
-    ):
+    def test_allow_nonzero_velocity(self, make_rig, make_request, allowed):
         rig = make_rig(allow_nonzero_velocity_at_trajectory_end=allowed)
         moving = make_request([(0.5, [1.0] * 3, [0.5] * 3)])
 
         assert (rig.controller.check_goal(moving) is None) is allowed
 
-    def test_a_velocity_at_the_end_is_kept(self, make_rig: MakeRig):
+    def test_a_velocity_at_the_end_is_kept(self, make_rig):
         rig = make_rig(
             commands=("position", "velocity"), allow_nonzero_velocity_at_trajectory_end=True
         )
@@ -79,7 +68,7 @@ class TestRefusal:
 
 
 class TestFeedback:
-    def test_comes_at_its_rate_of_the_controllers_time(self, make_rig: MakeRig):
+    def test_comes_at_its_rate_of_the_controllers_time(self, make_rig):
         rig = make_rig(action_monitor_rate=20.0)
         rig.goal([(1.0, [4.0, 5.0, 6.0])])
         rig.run(1.0)
@@ -88,21 +77,21 @@ class TestFeedback:
         assert len(times) == 20
         assert np.allclose(np.diff(times), 0.05)
 
-    def test_does_not_drift_where_rates_do_not_divide(self, make_rig: MakeRig):
+    def test_does_not_drift_where_rates_do_not_divide(self, make_rig):
         rig = make_rig(action_monitor_rate=30.0)
         rig.goal([(10.0, [4.0, 5.0, 6.0])])
         rig.run(10.0)
 
         assert len(rig.sink.feedback) == 300
 
-    def test_feedback_comes_in_every_cycle_at_a_higher_rate(self, make_rig: MakeRig):
+    def test_feedback_comes_in_every_cycle_at_a_higher_rate(self, make_rig):
         rig = make_rig(action_monitor_rate=1000.0)
         rig.goal([(0.5, [4.0, 5.0, 6.0])])
         rig.run(0.5)
 
         assert len(rig.sink.feedback) == 50
 
-    def test_feedback_has_desired_actual_and_error(self, make_rig: MakeRig):
+    def test_feedback_has_desired_actual_and_error(self, make_rig):
         rig = make_rig()
         rig.moves = False
         rig.goal([(1.0, [1.0, 2.0, 3.0])])
@@ -115,7 +104,7 @@ class TestFeedback:
         assert feedback.actual[0].tolist() == [0.0, 0.0, 0.0]
         assert feedback.error[0] == pytest.approx([0.25, 0.5, 0.75])
 
-    def test_stops_with_the_goal(self, make_rig: MakeRig):
+    def test_stops_with_the_goal(self, make_rig):
         rig = make_rig()
         rig.goal(ONE_POINT)
         rig.run(0.6)
@@ -124,7 +113,7 @@ class TestFeedback:
 
         assert len(rig.sink.feedback) == count
 
-    def test_no_supervisor_is_needed(self, make_rig: MakeRig):
+    def test_no_supervisor_is_needed(self, make_rig):
         rig = make_rig(activate=False)
         rig.controller.sink = None
         rig.activate()
@@ -135,7 +124,7 @@ class TestFeedback:
 
 
 class TestSpeedScaling:
-    def test_scaling_execution_time_succeeds(self, make_rig: MakeRig):
+    def test_scaling_execution_time_succeeds(self, make_rig):
         rig = make_rig(speed_scaling__initial_scaling_factor=0.5)
         rig.goal(ONE_POINT)
         rig.run(0.95)
@@ -144,7 +133,7 @@ class TestSpeedScaling:
         rig.run(0.1)
         assert rig.result == SUCCESS
 
-    def test_scaling_sampling_is_correct(self, make_rig: MakeRig):
+    def test_scaling_sampling_is_correct(self, make_rig):
         rig = make_rig()
         rig.controller.request_speed_scaling(0.1)
         rig.tick()

@@ -1,8 +1,5 @@
 """The life of goals: the cases of upstream's test_trajectory_actions.cpp, and more."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -12,8 +9,6 @@ from arm_control.controllers.joint_trajectory.goals import (
     GoalResult,
     JointTolerance,
 )
-
-MakeRig = Callable[..., Any]
 
 SUCCESS = GoalResult(GoalOutcome.SUCCEEDED, ErrorCode.SUCCESSFUL, "Goal successfully reached!")
 GOAL_TOLERANCES = {f"constraints__j{i}__goal": 0.1 for i in range(3)}
@@ -27,7 +22,7 @@ def aborted(code: ErrorCode, message: str) -> GoalResult:
 
 
 class TestSuccess:
-    def test_single_point(self, make_rig: MakeRig):
+    def test_single_point(self, make_rig):
         rig = make_rig()
         rig.goal(ONE_POINT)
         rig.run(1.0)
@@ -35,7 +30,7 @@ class TestSuccess:
         assert rig.result == SUCCESS
         assert rig.measured().tolist() == [1.0, 2.0, 3.0]
 
-    def test_single_point_with_velocity(self, make_rig: MakeRig):
+    def test_single_point_with_velocity(self, make_rig):
         rig = make_rig()
         rig.goal([(0.5, [1.0, 2.0, 3.0], [0.0, 0.0, 0.0])])
         rig.run(1.0)
@@ -43,7 +38,7 @@ class TestSuccess:
         assert rig.result == SUCCESS
         assert rig.measured().tolist() == [1.0, 2.0, 3.0]
 
-    def test_multi_point(self, make_rig: MakeRig):
+    def test_multi_point(self, make_rig):
         rig = make_rig()
         rig.goal(TWO_POINTS)
         rig.run(1.0)
@@ -52,7 +47,7 @@ class TestSuccess:
         assert rig.measured().tolist() == [7.0, 8.0, 9.0]
         assert rig.sink.feedback
 
-    def test_multi_point_with_velocity(self, make_rig: MakeRig):
+    def test_multi_point_with_velocity(self, make_rig):
         rig = make_rig(commands=("position", "velocity"))
         rig.goal([(0.2, [4.0, 5.0, 6.0], [1.0, 1.0, 1.0]), (0.3, [7.0, 8.0, 9.0], [0.0, 0.0, 0.0])])
         rig.run(1.0)
@@ -61,14 +56,14 @@ class TestSuccess:
         assert rig.measured().tolist() == [7.0, 8.0, 9.0]
 
     @pytest.mark.parametrize("points", [ONE_POINT, TWO_POINTS], ids=["single", "multi"])
-    def test_goal_tolerances(self, make_rig: MakeRig, points: list[Any]):
+    def test_goal_tolerances(self, make_rig, points):
         rig = make_rig(**GOAL_TOLERANCES)
         rig.goal(points)
         rig.run(1.0)
 
         assert rig.result == SUCCESS
 
-    def test_in_the_very_cycle_of_the_end(self, make_rig: MakeRig):
+    def test_in_the_very_cycle_of_the_end(self, make_rig):
         rig = make_rig()
         rig.goal(ONE_POINT)
         rig.tick(50)
@@ -77,7 +72,7 @@ class TestSuccess:
         rig.tick()
         assert rig.result == SUCCESS
 
-    def test_the_last_segment_is_not_cut(self, make_rig: MakeRig):
+    def test_the_last_segment_is_not_cut(self, make_rig):
         rig = make_rig()
         rig.goal([(0.5, [1.0, 1.0, 1.0]), (1.0, [2.0, 2.0, 2.0])])
         commanded = []
@@ -89,7 +84,7 @@ class TestSuccess:
         assert np.allclose(np.diff(commanded[:100]), 0.02)
         assert commanded[99] == pytest.approx(2.0)
 
-    def test_the_last_point_is_repeated_afterwards(self, make_rig: MakeRig):
+    def test_the_last_point_is_repeated_afterwards(self, make_rig):
         rig = make_rig(**GOAL_TOLERANCES, constraints__goal_time=0.1)
         rig.goal(ONE_POINT)
         rig.run(1.0)
@@ -99,7 +94,7 @@ class TestSuccess:
 
         assert rig.commanded().tolist() == [1.0, 2.0, 3.0], "nothing is checked any more"
 
-    def test_a_goal_without_any_motion(self, make_rig: MakeRig):
+    def test_a_goal_without_any_motion(self, make_rig):
         rig = make_rig()
         rig.goal([(0.0, [0.0, 0.0, 0.0])])
         rig.tick()
@@ -108,7 +103,7 @@ class TestSuccess:
 
 
 class TestTolerances:
-    def test_tolerances_via_actions(self, make_rig: MakeRig):
+    def test_tolerances_via_actions(self, make_rig):
         rig = make_rig(**GOAL_TOLERANCES)
         rig.goal(
             ONE_POINT,
@@ -121,7 +116,7 @@ class TestTolerances:
 
         assert rig.result.code is ErrorCode.PATH_TOLERANCE_VIOLATED
 
-    def test_a_goal_can_switch_tolerances_off(self, make_rig: MakeRig):
+    def test_a_goal_can_switch_tolerances_off(self, make_rig):
         rig = make_rig(**PATH_TOLERANCES)
         rig.moves = False
         rig.goal(ONE_POINT, path_tolerance=[JointTolerance(f"j{i}", -1.0) for i in range(3)])
@@ -133,9 +128,7 @@ class TestTolerances:
         assert rig.result == SUCCESS
 
     @pytest.mark.parametrize("tolerance", [JointTolerance("j0", -5.0), JointTolerance("j9", 1.0)])
-    def test_bad_ones_fall_back_to_the_defaults(
-        self, make_rig: MakeRig, tolerance: JointTolerance, caplog: pytest.LogCaptureFixture
-    ):
+    def test_bad_ones_fall_back_to_the_defaults(self, make_rig, tolerance, caplog):
         rig = make_rig(**PATH_TOLERANCES)
         rig.moves = False
         rig.goal(ONE_POINT, path_tolerance=[JointTolerance("j1", 99.0), tolerance])
@@ -144,7 +137,7 @@ class TestTolerances:
         assert rig.result.code is ErrorCode.PATH_TOLERANCE_VIOLATED
         assert "the default tolerances are used" in caplog.text
 
-    def test_state_tolerances_fail(self, make_rig: MakeRig):
+    def test_state_tolerances_fail(self, make_rig):
         rig = make_rig(**PATH_TOLERANCES)
         rig.moves = False
         rig.goal([(1.0, [4.0, 5.0, 6.0])])
@@ -155,7 +148,7 @@ class TestTolerances:
         )
         assert rig.commanded().tolist() == rig.measured().tolist() == [0.0, 0.0, 0.0]
 
-    def test_goal_tolerances_fail(self, make_rig: MakeRig):
+    def test_goal_tolerances_fail(self, make_rig):
         rig = make_rig(**GOAL_TOLERANCES, constraints__goal_time=0.05)
         rig.moves = False
         rig.goal(ONE_POINT)
@@ -167,7 +160,7 @@ class TestTolerances:
         )
         assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
 
-    def test_without_a_goal_time_it_waits_for_ever(self, make_rig: MakeRig):
+    def test_without_a_goal_time_it_waits_for_ever(self, make_rig):
         rig = make_rig(**GOAL_TOLERANCES)
         rig.moves = False
         rig.goal(ONE_POINT)
@@ -178,7 +171,7 @@ class TestTolerances:
         rig.tick()
         assert rig.result == SUCCESS
 
-    def test_within_tolerance_in_time_is_success(self, make_rig: MakeRig):
+    def test_within_tolerance_in_time_is_success(self, make_rig):
         rig = make_rig(**GOAL_TOLERANCES, constraints__goal_time=0.5)
         rig.moves = False
         rig.goal(ONE_POINT)
@@ -188,7 +181,7 @@ class TestTolerances:
 
         assert rig.result == SUCCESS
 
-    def test_no_time_from_start_state_tolerance_fail(self, make_rig: MakeRig):
+    def test_no_time_from_start_state_tolerance_fail(self, make_rig):
         rig = make_rig(**PATH_TOLERANCES)
         rig.moves = False
         rig.goal([(0.0, [4.0, 5.0, 6.0])])
@@ -196,7 +189,7 @@ class TestTolerances:
 
         assert rig.result.code is ErrorCode.PATH_TOLERANCE_VIOLATED
 
-    def test_the_log_names_the_joint(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+    def test_the_log_names_the_joint(self, make_rig, caplog):
         rig = make_rig(constraints__j1__trajectory=0.01)
         rig.moves = False
         rig.goal([(1.0, [0.0, 5.0, 0.0])])
@@ -204,7 +197,7 @@ class TestTolerances:
 
         assert "position error of joint j1 is 0.050000, tolerance 0.010000" in caplog.text
 
-    def test_stopped_velocity_counts_where_velocity_is_commanded(self, make_rig: MakeRig):
+    def test_stopped_velocity_counts_where_velocity_is_commanded(self, make_rig):
         rig = make_rig(commands=("position", "velocity"))
         rig.goal([(0.5, [1.0, 2.0, 3.0], [0.0, 0.0, 0.0])])
         rig.tick(50)
@@ -217,7 +210,7 @@ class TestTolerances:
         rig.tick()
         assert rig.result == SUCCESS
 
-    def test_stopped_velocity_does_not_count_where_only_positions_are(self, make_rig: MakeRig):
+    def test_stopped_velocity_does_not_count_where_only_positions_are(self, make_rig):
         rig = make_rig()
         rig.place([0.5, 0.0, 0.0], "velocity")
         rig.goal(ONE_POINT)
@@ -227,7 +220,7 @@ class TestTolerances:
 
 
 class TestEnd:
-    def test_preempted_goal_receives_aborted_result(self, make_rig: MakeRig):
+    def test_preempted_goal_receives_aborted_result(self, make_rig):
         rig = make_rig()
         rig.goal(ONE_POINT, "first")
         rig.tick(10)
@@ -243,7 +236,7 @@ class TestEnd:
         assert rig.sink.results["second"] == SUCCESS
         assert rig.measured().tolist() == [-1.0, -1.0, -1.0]
 
-    def test_goals_of_one_cycle_preempt_each_other(self, make_rig: MakeRig):
+    def test_goals_of_one_cycle_preempt_each_other(self, make_rig):
         rig = make_rig()
         for name in ("first", "second", "third"):
             rig.goal(ONE_POINT, name)
@@ -251,7 +244,7 @@ class TestEnd:
 
         assert list(rig.sink.results) == ["first", "second"]
 
-    def test_a_trajectory_on_the_topic_ends_the_goal(self, make_rig: MakeRig):
+    def test_a_trajectory_on_the_topic_ends_the_goal(self, make_rig):
         rig = make_rig()
         rig.goal(ONE_POINT)
         rig.tick(10)
@@ -262,7 +255,7 @@ class TestEnd:
             ErrorCode.INVALID_GOAL, "Current goal preempted by a trajectory on the topic."
         )
 
-    def test_cancel_hold_position(self, make_rig: MakeRig):
+    def test_cancel_hold_position(self, make_rig):
         rig = make_rig()
         rig.goal([(1.0, [4.0, 5.0, 6.0])])
         rig.run(0.5)
@@ -274,7 +267,7 @@ class TestEnd:
         rig.run(1.0)
         assert rig.commanded().tolist() == where.tolist()
 
-    def test_cancel_of_another_goal_changes_nothing(self, make_rig: MakeRig):
+    def test_cancel_of_another_goal_changes_nothing(self, make_rig):
         rig = make_rig()
         rig.goal(ONE_POINT)
         rig.controller.cancel_goal("another")
@@ -282,7 +275,7 @@ class TestEnd:
 
         assert rig.result == SUCCESS
 
-    def test_cancel_after_the_end_changes_nothing(self, make_rig: MakeRig):
+    def test_cancel_after_the_end_changes_nothing(self, make_rig):
         rig = make_rig()
         rig.goal(ONE_POINT)
         rig.run(1.0)
@@ -292,7 +285,7 @@ class TestEnd:
         assert rig.result == SUCCESS
         assert rig.commanded().tolist() == [1.0, 2.0, 3.0]
 
-    def test_cancel_in_the_cycle_of_the_start(self, make_rig: MakeRig):
+    def test_cancel_in_the_cycle_of_the_start(self, make_rig):
         rig = make_rig()
         rig.goal(ONE_POINT)
         rig.controller.cancel_goal("goal")
@@ -301,7 +294,7 @@ class TestEnd:
         assert rig.result.outcome is GoalOutcome.CANCELED
         assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
 
-    def test_cancel_works_while_paused(self, make_rig: MakeRig):
+    def test_cancel_works_while_paused(self, make_rig):
         rig = make_rig()
         rig.goal([(1.0, [4.0, 5.0, 6.0])])
         rig.run(0.5)
@@ -310,7 +303,7 @@ class TestEnd:
 
         assert rig.result.outcome is GoalOutcome.CANCELED
 
-    def test_deactivate_controller_aborts_action(self, make_rig: MakeRig):
+    def test_deactivate_controller_aborts_action(self, make_rig):
         rig = make_rig()
         rig.goal(ONE_POINT)
         rig.run(0.2)
@@ -320,7 +313,7 @@ class TestEnd:
             ErrorCode.INVALID_GOAL, "Current goal cancelled during deactivate transition."
         )
 
-    def test_deactivation_ends_goals_that_were_not_even_begun(self, make_rig: MakeRig):
+    def test_deactivation_ends_goals_that_were_not_even_begun(self, make_rig):
         rig = make_rig()
         rig.goal(ONE_POINT, "first")
         rig.goal(ONE_POINT, "second")

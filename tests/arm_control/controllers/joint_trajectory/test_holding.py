@@ -1,14 +1,9 @@
 """When the controller aborts, times out, brakes or holds."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
 
 from arm_control.controllers.joint_trajectory.goals import GoalOutcome, JointTolerance
-
-MakeRig = Callable[..., Any]
 
 MOVE = [(1.0, [1.0, 2.0, 3.0])]
 BRAKES = {
@@ -18,7 +13,7 @@ BRAKES = {
 
 
 class TestTopicTrajectories:
-    def test_state_tolerances_fail(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+    def test_state_tolerances_fail(self, make_rig, caplog):
         rig = make_rig(constraints__j1__trajectory=0.0001)
         rig.moves = False
         rig.trajectory(MOVE)
@@ -27,7 +22,7 @@ class TestTopicTrajectories:
         assert "Holding position due to state tolerance violation" in caplog.text
         assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
 
-    def test_goal_tolerances_fail(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+    def test_goal_tolerances_fail(self, make_rig, caplog):
         rig = make_rig(constraints__j1__goal=0.1, constraints__goal_time=0.1)
         rig.moves = False
         rig.trajectory(MOVE)
@@ -38,7 +33,7 @@ class TestTopicTrajectories:
         assert "Exceeded goal_time_tolerance: holding position..." in caplog.text
         assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
 
-    def test_a_hold_checks_nothing(self, make_rig: MakeRig):
+    def test_a_hold_checks_nothing(self, make_rig):
         rig = make_rig(constraints__j1__trajectory=0.0001)
         rig.moves = False
         rig.trajectory(MOVE)
@@ -50,12 +45,12 @@ class TestTopicTrajectories:
 
 
 class TestTimeout:
-    def test_accept_correct_cmd_timeout(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+    def test_accept_correct_cmd_timeout(self, make_rig, caplog):
         make_rig(cmd_timeout=3.0, constraints__goal_time=2.0)
 
         assert "cmd_timeout" not in caplog.text
 
-    def test_decline_false_cmd_timeout(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+    def test_decline_false_cmd_timeout(self, make_rig, caplog):
         rig = make_rig(cmd_timeout=1.0, constraints__goal_time=2.0)
         rig.trajectory(MOVE)
         rig.run(5.0)
@@ -63,7 +58,7 @@ class TestTimeout:
         assert "must be greater than constraints.goal_time" in caplog.text
         assert "Aborted due to command timeout" not in caplog.text
 
-    def test_no_timeout(self, make_rig: MakeRig):
+    def test_no_timeout(self, make_rig):
         rig = make_rig()
         rig.trajectory(MOVE)
         rig.run(1.1)
@@ -73,7 +68,7 @@ class TestTimeout:
 
         assert rig.commanded().tolist() == [1.0, 2.0, 3.0]
 
-    def test_timeout(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+    def test_timeout(self, make_rig, caplog):
         rig = make_rig(cmd_timeout=0.1)
         rig.trajectory(MOVE)
         rig.run(1.1)
@@ -85,7 +80,7 @@ class TestTimeout:
         assert "Aborted due to command timeout" in caplog.text
         assert rig.commanded().tolist() == [0.9, 1.9, 2.9]
 
-    def test_a_goal_that_succeeded_has_no_timeout(self, make_rig: MakeRig):
+    def test_a_goal_that_succeeded_has_no_timeout(self, make_rig):
         rig = make_rig(cmd_timeout=0.1)
         rig.goal(MOVE)
         rig.run(1.1)
@@ -95,7 +90,7 @@ class TestTimeout:
 
         assert rig.commanded().tolist() == [1.0, 2.0, 3.0]
 
-    def test_a_goal_that_waits_is_not_ended_but_can_be_cancelled(self, make_rig: MakeRig):
+    def test_a_goal_that_waits_is_not_ended_but_can_be_cancelled(self, make_rig):
         rig = make_rig(cmd_timeout=0.1, constraints__j0__goal=0.01)
         rig.moves = False
         rig.goal(MOVE)
@@ -109,9 +104,7 @@ class TestTimeout:
 
 
 class TestDeceleration:
-    def test_cancel_decelerate_to_hold_position(
-        self, make_rig: MakeRig, robot_description: Callable[..., str]
-    ):
+    def test_cancel_decelerate_to_hold_position(self, make_rig, robot_description):
         rig = make_rig(
             constraints__decelerate_on_cancel=True, robot_description=robot_description(), **BRAKES
         )
@@ -128,9 +121,7 @@ class TestDeceleration:
         # v² / 2a
         assert rig.commanded() == pytest.approx(start + np.array([0.5, 1.0, 1.125]))
 
-    def test_each_joint_stops_in_its_own_time(
-        self, make_rig: MakeRig, robot_description: Callable[..., str]
-    ):
+    def test_each_joint_stops_in_its_own_time(self, make_rig, robot_description):
         rig = make_rig(
             commands=("position", "velocity"),
             constraints__decelerate_on_cancel=True,
@@ -147,9 +138,7 @@ class TestDeceleration:
 
         assert rig.commanded("velocity") == pytest.approx([0.5, -1.0, 0.0])
 
-    def test_a_trajectory_interrupts_it(
-        self, make_rig: MakeRig, robot_description: Callable[..., str]
-    ):
+    def test_a_trajectory_interrupts_it(self, make_rig, robot_description):
         rig = make_rig(
             constraints__decelerate_on_cancel=True, robot_description=robot_description(), **BRAKES
         )
@@ -172,14 +161,7 @@ class TestDeceleration:
             ({"robot_description": ""}, "velocity limit of joint j0"),
         ],
     )
-    def test_fallback(
-        self,
-        make_rig: MakeRig,
-        robot_description: Callable[..., str],
-        options: dict[str, Any],
-        lack: str,
-        caplog: pytest.LogCaptureFixture,
-    ):
+    def test_fallback(self, make_rig, robot_description, options, lack, caplog):
         rig = make_rig(
             **{
                 "constraints__decelerate_on_cancel": True,
@@ -199,7 +181,7 @@ class TestDeceleration:
 
 
 class TestQuery:
-    def test_a_time_of_the_trajectory(self, make_rig: MakeRig):
+    def test_a_time_of_the_trajectory(self, make_rig):
         rig = make_rig()
         rig.trajectory([(1.0, [1.0, 2.0, 3.0])])
         rig.tick()
@@ -212,7 +194,7 @@ class TestQuery:
             np.array([[0.25, 0.5, 0.75], [1.0, 2.0, 3.0], [0.0, 0.0, 0.0]])
         )
 
-    def test_moves_nothing(self, make_rig: MakeRig):
+    def test_moves_nothing(self, make_rig):
         rig = make_rig()
         rig.goal([(0.5, [1.0] * 3), (1.0, [2.0] * 3)])
         rig.run(0.3)
@@ -222,7 +204,7 @@ class TestQuery:
         assert rig.sink.state.reference[0, 0] == pytest.approx(0.6)
         assert rig.result is None
 
-    def test_before_the_start_it_is_what_is_measured(self, make_rig: MakeRig):
+    def test_before_the_start_it_is_what_is_measured(self, make_rig):
         rig = make_rig()
         rig.trajectory([(1.0, [1.0, 2.0, 3.0])])
         rig.tick()
@@ -234,7 +216,7 @@ class TestQuery:
         assert answer.motion[0] == pytest.approx([0.5, 1.0, 1.5])
 
     @pytest.mark.parametrize("later_s", [0.6, 1000.0])
-    def test_after_the_end_it_is_the_last_point(self, make_rig: MakeRig, later_s: float):
+    def test_after_the_end_it_is_the_last_point(self, make_rig, later_s):
         rig = make_rig()
         rig.trajectory([(1.0, [1.0, 2.0, 3.0], [0.0, 0.0, 0.0])])
         rig.tick()
@@ -245,10 +227,10 @@ class TestQuery:
         assert "after" in answer.message
         assert answer.motion == pytest.approx(np.array([[1.0, 2.0, 3.0], [0.0] * 3, [0.0] * 3]))
 
-    def test_before_the_first_cycle(self, make_rig: MakeRig):
+    def test_before_the_first_cycle(self, make_rig):
         assert "no trajectory" in make_rig().controller.query_state(0.0).message
 
-    def test_while_not_active(self, make_rig: MakeRig):
+    def test_while_not_active(self, make_rig):
         answer = make_rig(activate=False).controller.query_state(0.0)
 
         assert not answer.success
@@ -256,7 +238,7 @@ class TestQuery:
 
 
 class TestParametersThatChange:
-    def test_update_dynamic_parameters(self, make_rig: MakeRig):
+    def test_update_dynamic_parameters(self, make_rig):
         rig = make_rig(commands=("effort",))
         rig.moves = False
         rig.trajectory([(0.0, [1.0, 1.0, 1.0])])
@@ -267,7 +249,7 @@ class TestParametersThatChange:
         rig.tick()
         assert rig.commanded("effort").tolist() == [0.0, 2.0, 0.0]
 
-    def test_update_dynamic_tolerances(self, make_rig: MakeRig):
+    def test_update_dynamic_tolerances(self, make_rig):
         rig = make_rig()
         rig.moves = False
         rig.goal(MOVE)
@@ -278,7 +260,7 @@ class TestParametersThatChange:
         rig.tick()
         assert rig.result is not None
 
-    def test_a_goals_own_tolerances_stay(self, make_rig: MakeRig):
+    def test_a_goals_own_tolerances_stay(self, make_rig):
         rig = make_rig()
         rig.moves = False
         rig.goal(MOVE, path_tolerance=[JointTolerance("j0", 0.9)])
@@ -288,7 +270,7 @@ class TestParametersThatChange:
 
         assert rig.result is None
 
-    def test_rules(self, make_rig: MakeRig, make_request: Callable[..., Any]):
+    def test_rules(self, make_rig, make_request):
         rig = make_rig()
         partial = make_request([(1.0, [1.0])], ["j1"])
         assert rig.controller.check_goal(partial) is not None

@@ -53,7 +53,7 @@ def sink() -> Results:
 
 
 @pytest.fixture
-def controller(bench: Any, sink: Results) -> JointTrajectoryController:
+def controller(bench, sink) -> JointTrajectoryController:
     controller = JointTrajectoryController(ControllerContext("jtc", 100))
     controller.sink = sink
     bench.manager.load_controller(controller, "test")
@@ -70,7 +70,7 @@ def positions(bench: Any) -> list[float]:
     return [bench.hardware.states[names.index(f"{joint}/position")] for joint in JOINTS]
 
 
-def test_follows_a_goal(bench: Any, controller: JointTrajectoryController, sink: Results):
+def test_follows_a_goal(bench, controller, sink):
     bench.manager.configure_controller("jtc", PARAMETERS)
     bench.switch("jtc")
     go(controller, 0.5, 1.0, 2.0, 3.0, 4.0)
@@ -80,7 +80,7 @@ def test_follows_a_goal(bench: Any, controller: JointTrajectoryController, sink:
     assert [result.message for result in sink.results] == ["Goal successfully reached!"]
 
 
-def test_runs_at_its_own_rate(bench: Any, controller: JointTrajectoryController):
+def test_runs_at_its_own_rate(bench, controller):
     bench.manager.configure_controller("jtc", PARAMETERS, 25)
     bench.switch("jtc")
     go(controller, 0.4, 1.0, 2.0, 3.0, 4.0)
@@ -89,9 +89,7 @@ def test_runs_at_its_own_rate(bench: Any, controller: JointTrajectoryController)
     assert positions(bench) == [1.0, 2.0, 3.0, 4.0]
 
 
-def test_takes_over_from_another_controller_without_a_jump(
-    bench: Any, controller: JointTrajectoryController
-):
+def test_takes_over_from_another_controller_without_a_jump(bench, controller):
     forward = JointGroupPositionController(ControllerContext("forward", 100))
     bench.manager.load_controller(forward, "test")
     bench.manager.configure_controller("forward", PositionGroupParameters(JOINTS))
@@ -105,9 +103,7 @@ def test_takes_over_from_another_controller_without_a_jump(
     assert positions(bench) == [0.1, 0.2, 0.3, 0.4]
 
 
-def test_hands_over_in_the_middle_of_a_goal(
-    bench: Any, controller: JointTrajectoryController, sink: Results
-):
+def test_hands_over_in_the_middle_of_a_goal(bench, controller, sink):
     forward = JointGroupPositionController(ControllerContext("forward", 100))
     bench.manager.load_controller(forward, "test")
     bench.manager.configure_controller("forward", PositionGroupParameters(JOINTS))
@@ -128,19 +124,14 @@ def test_hands_over_in_the_middle_of_a_goal(
     "parameters",
     [replace(PARAMETERS, state_interfaces=()), replace(PARAMETERS, action_monitor_rate=0.0)],
 )
-def test_says_why_it_is_not_configured(
-    bench: Any,
-    controller: JointTrajectoryController,
-    parameters: JointTrajectoryParameters,
-    caplog: pytest.LogCaptureFixture,
-):
+def test_says_why_it_is_not_configured(bench, controller, parameters, caplog):
     with pytest.raises(ControllerManagerError, match="parameter"):
         bench.manager.configure_controller("jtc", parameters)
 
     assert "Traceback" not in caplog.text
 
 
-def test_can_be_configured_again(bench: Any, controller: JointTrajectoryController):
+def test_can_be_configured_again(bench, controller):
     bench.manager.configure_controller("jtc", PARAMETERS)
     bench.manager.configure_controller("jtc", replace(PARAMETERS, joints=("j0",)))
     bench.switch("jtc")

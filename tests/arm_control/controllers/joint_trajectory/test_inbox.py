@@ -27,22 +27,18 @@ def inbox() -> Inbox:
 
 
 @pytest.fixture
-def replacement(make_request: Callable[..., Any]) -> Callable[[], TrajectoryReplacement]:
+def replacement(make_request) -> Callable[[], TrajectoryReplacement]:
     return lambda: TrajectoryReplacement(Trajectory(make_request([(1.0, [0.0])], ["j"]), ["j"]))
 
 
-def test_a_stream_of_trajectories_does_not_pile_up(
-    inbox: Inbox, replacement: Callable[[], TrajectoryReplacement]
-):
+def test_a_stream_of_trajectories_does_not_pile_up(inbox, replacement):
     newest = replacement()
     for request in (replacement(), replacement(), newest):
         inbox.put(request)
     assert inbox.take() == [newest]
 
 
-def test_other_requests_stay_where_they_are(
-    inbox: Inbox, replacement: Callable[[], TrajectoryReplacement]
-):
+def test_other_requests_stay_where_they_are(inbox, replacement):
     for request in (replacement(), GoalCancel(1), replacement()):
         inbox.put(request)
     assert [type(request) for request in inbox.take()] == [
@@ -52,9 +48,7 @@ def test_other_requests_stay_where_they_are(
     ]
 
 
-def test_a_goal_ends_once_whenever_the_controller_stops(
-    make_rig: Callable[..., Any], make_request: Callable[..., Any]
-):
+def test_a_goal_ends_once_whenever_the_controller_stops(make_rig, make_request):
     """A goal is refused, or it has a result: never both, never neither."""
     together = Barrier(2, timeout=60.0)
 

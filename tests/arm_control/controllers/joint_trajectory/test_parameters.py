@@ -1,6 +1,5 @@
 """Parameters: names, defaults, refused values, and the requested interfaces."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -9,8 +8,6 @@ from arm_control.controllers.joint_trajectory.controller import JointTrajectoryC
 from arm_control.controllers.joint_trajectory.parameters import JointTrajectoryParameters
 from arm_control.errors import ControllerError, ParameterError
 from arm_control.parameters import build_parameters, specs_of
-
-MakeRig = Callable[..., Any]
 
 JOINTS = ("j0", "j1", "j2")
 INF = float("inf")
@@ -33,7 +30,7 @@ def test_parameters_of_each_joint_are_found_by_its_name():
 
 
 @pytest.mark.parametrize("joints", [5, True, "j0"])
-def test_joints_that_are_not_a_list_are_refused_in_a_sentence(joints: object):
+def test_joints_that_are_not_a_list_are_refused_in_a_sentence(joints):
     given = {"joints": joints}
     assert "joints" in {spec.name for spec in specs_of(JointTrajectoryParameters, given=given)}
     with pytest.raises(ParameterError, match=f"'joints' must be a list, not {joints!r}"):
@@ -83,7 +80,7 @@ def test_joints_that_are_not_a_list_are_refused_in_a_sentence(joints: object):
         ("smooth_replacement_time", 0.0, False),
     ],
 )
-def test_every_parameter(name: str, default: object, read_only: bool):
+def test_every_parameter(name, default, read_only):
     assert specs()[name].default == default
     assert specs()[name].read_only is read_only
 
@@ -112,12 +109,12 @@ def test_there_are_no_others():
         ({"constraints.j0.goal": "near"}, "under 'constraints.j0': parameter 'goal' must be"),
     ],
 )
-def test_values_that_cannot_be(values: dict[str, Any], words: str):
+def test_values_that_cannot_be(values, words):
     with pytest.raises(ParameterError, match=words):
         build_parameters(JointTrajectoryParameters, {"joints": JOINTS, **values})
 
 
-def test_a_refused_change_leaves_the_old_ones(make_rig: MakeRig):
+def test_a_refused_change_leaves_the_old_ones(make_rig):
     rig = make_rig(cmd_timeout=1.0)
     with pytest.raises(ParameterError):
         rig.set(cmd_timeout=-1.0)
@@ -127,7 +124,7 @@ def test_a_refused_change_leaves_the_old_ones(make_rig: MakeRig):
 
 
 class TestInterfaces:
-    def test_are_claimed_joint_by_joint(self, make_rig: MakeRig):
+    def test_are_claimed_joint_by_joint(self, make_rig):
         controller = make_rig(commands=("position", "velocity")).controller
 
         assert controller.command_interface_configuration().names[:3] == (
@@ -141,7 +138,7 @@ class TestInterfaces:
             "j1/position",
         )
 
-    def test_command_joints_may_have_other_names(self, make_rig: MakeRig):
+    def test_command_joints_may_have_other_names(self, make_rig):
         controller = make_rig(command_joints=("m0", "m1", "m2"), activate=False).controller
 
         assert controller.command_interface_configuration().names == (
@@ -175,8 +172,6 @@ class TestInterfaces:
             ),
         ],
     )
-    def test_incorrect_initialization_using_interface_parameters(
-        self, make_rig: MakeRig, parameters: dict[str, Any], words: str
-    ):
+    def test_incorrect_initialization_using_interface_parameters(self, make_rig, parameters, words):
         with pytest.raises(ControllerError, match=words):
             make_rig(activate=False, **parameters)

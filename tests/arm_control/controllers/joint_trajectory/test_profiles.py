@@ -132,7 +132,7 @@ class TestJoinedProfile:
         return JoinedProfile(commanded, self.spline, 0.0, offset_s, 1.0, NOT_CONTINUOUS)
 
     @pytest.mark.parametrize("offset_s", [-3.5, -1.0, 0.0, 0.001, 0.5, 3.0])
-    def test_starts_as_commanded_wherever_the_spline_is(self, offset_s: float):
+    def test_starts_as_commanded_wherever_the_spline_is(self, offset_s):
         sample = self.joined(offset_s=offset_s).sample(0.0)
 
         assert sample[:3, 0] == pytest.approx([0.2, -1.0, 3.0])
@@ -172,7 +172,7 @@ class TestJoinedProfile:
         assert profile.sample(0.0)[0, 0] == pytest.approx(2.0 * np.pi)
 
     @pytest.mark.parametrize("offset_s", [-1.0, 0.0, 0.3, 2.0])
-    def test_has_no_step_anywhere(self, offset_s: float):
+    def test_has_no_step_anywhere(self, offset_s):
         profile = self.joined(offset_s=offset_s)
         times = np.linspace(0.0, 2.2, 22001)
         samples = np.stack([profile.sample(t)[:, 0] for t in times])

@@ -3,7 +3,6 @@
 import struct
 from collections.abc import Sequence
 from contextlib import suppress
-from typing import Any
 
 import numpy as np
 import pytest
@@ -86,9 +85,7 @@ def like_points(draw: st.DrawFn) -> list[TrajectoryPoint]:
     frame=st.text("xyz", max_size=9),
     order=st.sampled_from("<>"),
 )
-def test_what_was_written_is_read(
-    names: list[str], points: list[TrajectoryPoint], frame: str, order: str
-) -> None:
+def test_what_was_written_is_read(names, points, frame, order):
     request = read_trajectory(serialize(names, points, frame, order))
     assert (list(request.joint_names), request.stamp_s) == (names, 3.25)
     assert len(request.points) == len(points)
@@ -99,7 +96,7 @@ def test_what_was_written_is_read(
 
 
 @given(points=st.lists(any_point, max_size=6))
-def test_points_are_the_same_as_arrays(points: list[TrajectoryPoint]) -> None:
+def test_points_are_the_same_as_arrays(points):
     kept = WayPoints.of(points)
     assert list(kept) == points
     assert kept[1:] == points[1:]
@@ -107,14 +104,14 @@ def test_points_are_the_same_as_arrays(points: list[TrajectoryPoint]) -> None:
 
 
 @given(points=st.one_of(like_points(), st.lists(any_point, max_size=6)), data=st.data())
-def test_bytes_that_end_too_soon_are_refused(points: list[TrajectoryPoint], data: Any) -> None:
+def test_bytes_that_end_too_soon_are_refused(points, data):
     whole = serialize(["j0", "j1"], points)
     kept = data.draw(st.integers(0, len(whole) - 1))
     with pytest.raises(SerializedTrajectoryError):
         read_trajectory(whole[:kept])
 
 
-def test_the_last_of_many_points_is_not_read_beyond_the_end() -> None:
+def test_the_last_of_many_points_is_not_read_beyond_the_end():
     points = [TrajectoryPoint(0.5 * i, [float(i)] * 3) for i in range(20)]
     whole = serialize(["j0", "j1", "j2"], points)
     for kept in range(len(whole) - 60, len(whole)):
@@ -123,18 +120,18 @@ def test_the_last_of_many_points_is_not_read_beyond_the_end() -> None:
 
 
 @given(st.binary(max_size=200))
-def test_any_other_bytes_are_refused_or_read(data: bytes) -> None:
+def test_any_other_bytes_are_refused_or_read(data):
     with suppress(SerializedTrajectoryError):
         assert len(read_trajectory(b"\0\1\0\0" + data).points) <= len(data) / 24
 
 
-def test_a_count_beyond_the_bytes_takes_no_memory() -> None:
+def test_a_count_beyond_the_bytes_takes_no_memory():
     count_at = len(serialize([], [])) - 4
     data = serialize([], [])[:count_at] + struct.pack("<I", 2**31) + bytes(100)
     with pytest.raises(SerializedTrajectoryError, match="2147483648 elements in 100 bytes"):
         read_trajectory(data)
 
 
-def test_another_encoding_is_named() -> None:
+def test_another_encoding_is_named():
     with pytest.raises(SerializedTrajectoryError, match="the encoding 000b is not plain CDR"):
         read_trajectory(b"\0\x0b\0\0" + bytes(40))

@@ -7,8 +7,6 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-MakeRig = Callable[..., Any]
-
 JOIN_S = 0.3
 STRETCH_S = 0.5
 PERIOD_S = 0.001
@@ -45,9 +43,7 @@ def sequences(draw: Callable) -> list[tuple[list[tuple[Any, ...]], float, float]
 
 @unhurried
 @given(sequences())
-def test_commands_are_continuous_in_position_and_velocity(
-    make_rig: MakeRig, sequence: list[tuple[list[tuple[Any, ...]], float, float]]
-):
+def test_commands_are_continuous_in_position_and_velocity(make_rig, sequence):
     rig = make_rig(commands=("position", "velocity"), smooth_replacement_time=JOIN_S)
     rig.period_s = PERIOD_S
     rig.tick()

@@ -1,12 +1,7 @@
 """Trajectory time that runs faster, slower, or not at all."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 import pytest
-
-MakeRig = Callable[..., Any]
 
 MOVE = [(1.0, [1.0, 2.0, 3.0])]
 BRAKES = {
@@ -15,7 +10,7 @@ BRAKES = {
 }
 
 
-def test_setting_scaling_factor_works_correctly(make_rig: MakeRig):
+def test_setting_scaling_factor_works_correctly(make_rig):
     rig = make_rig()
 
     assert rig.controller.request_speed_scaling(0.5)
@@ -27,9 +22,7 @@ def test_setting_scaling_factor_works_correctly(make_rig: MakeRig):
 
 
 @pytest.mark.parametrize("factor", [-0.1, np.nan, np.inf, 1e300])
-def test_an_invalid_factor_is_ignored(
-    make_rig: MakeRig, factor: float, caplog: pytest.LogCaptureFixture
-):
+def test_an_invalid_factor_is_ignored(make_rig, factor, caplog):
     rig = make_rig()
 
     assert not rig.controller.request_speed_scaling(factor)
@@ -38,7 +31,7 @@ def test_an_invalid_factor_is_ignored(
     assert "Ignoring input!" in caplog.text
 
 
-def test_a_factor_of_zero_holds_the_command(make_rig: MakeRig):
+def test_a_factor_of_zero_holds_the_command(make_rig):
     rig = make_rig()
     rig.trajectory(MOVE)
     rig.run(0.5)
@@ -53,7 +46,7 @@ def test_a_factor_of_zero_holds_the_command(make_rig: MakeRig):
     assert rig.measured().tolist() == [1.0, 2.0, 3.0]
 
 
-def test_a_change_makes_no_step(make_rig: MakeRig):
+def test_a_change_makes_no_step(make_rig):
     rig = make_rig()
     rig.trajectory([(1.0, [1.0, 1.0, 1.0])])
     commanded = []
@@ -65,7 +58,7 @@ def test_a_change_makes_no_step(make_rig: MakeRig):
     assert np.diff(commanded) == pytest.approx([0.005, 0.0, 0.02, 0.001, 0.01])
 
 
-def test_a_goal_whose_speed_is_scaled_to_0_does_not_time_out(make_rig: MakeRig):
+def test_a_goal_whose_speed_is_scaled_to_0_does_not_time_out(make_rig):
     rig = make_rig(constraints__j0__goal=0.1, constraints__goal_time=0.1)
     rig.goal(MOVE)
     rig.run(0.5)
@@ -75,7 +68,7 @@ def test_a_goal_whose_speed_is_scaled_to_0_does_not_time_out(make_rig: MakeRig):
     assert rig.result is None
 
 
-def test_braking_is_not_scaled(make_rig: MakeRig, robot_description: Callable[..., str]):
+def test_braking_is_not_scaled(make_rig, robot_description):
     rig = make_rig(
         constraints__decelerate_on_cancel=True,
         robot_description=robot_description(),
@@ -93,7 +86,7 @@ def test_braking_is_not_scaled(make_rig: MakeRig, robot_description: Callable[..
     assert rig.commanded() == pytest.approx(start + np.array([0.5, 0.0, 0.0]))
 
 
-def test_hardware_can_tell_the_factor(make_rig: MakeRig):
+def test_hardware_can_tell_the_factor(make_rig):
     rig = make_rig(speed_scaling__state_interface="speed/factor")
     rig.moves = False
     rig.set_state("speed/factor", 0.25)
@@ -105,7 +98,7 @@ def test_hardware_can_tell_the_factor(make_rig: MakeRig):
     assert rig.sink.state.speed_scaling == 0.25, "hardware that is starting says nothing"
 
 
-def test_a_factor_can_be_requested_from_hardware(make_rig: MakeRig):
+def test_a_factor_can_be_requested_from_hardware(make_rig):
     rig = make_rig(speed_scaling__command_interface="speed/factor")
     rig.controller.request_speed_scaling(0.25)
     rig.tick()
@@ -114,16 +107,14 @@ def test_a_factor_can_be_requested_from_hardware(make_rig: MakeRig):
     assert rig.commanded().tolist() == [0.0, 0.0, 0.0]
 
 
-def test_a_wish_that_hardware_will_overwrite_is_warned_of(
-    make_rig: MakeRig, caplog: pytest.LogCaptureFixture
-):
+def test_a_wish_that_hardware_will_overwrite_is_warned_of(make_rig, caplog):
     rig = make_rig(speed_scaling__state_interface="speed/factor")
     rig.controller.request_speed_scaling(0.25)
 
     assert "speed_scaling.command_interface" in caplog.text
 
 
-def test_deactivation_leaves_the_hardwares_factor(make_rig: MakeRig):
+def test_deactivation_leaves_the_hardwares_factor(make_rig):
     rig = make_rig(
         commands=("position", "velocity"), speed_scaling__command_interface="speed/factor"
     )
@@ -136,5 +127,5 @@ def test_deactivation_leaves_the_hardwares_factor(make_rig: MakeRig):
 @pytest.mark.parametrize(
     ("commands", "takes"), [(("position",), True), (("position", "velocity"), False)]
 )
-def test_is_for_positions_only(make_rig: MakeRig, commands: tuple[str, ...], takes: bool):
+def test_is_for_positions_only(make_rig, commands, takes):
     assert make_rig(commands=commands).controller.takes_speed_scaling is takes

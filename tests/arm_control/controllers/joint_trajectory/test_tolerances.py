@@ -27,7 +27,7 @@ def defaults() -> Tolerances:
 
 
 @pytest.fixture
-def ask(defaults: Tolerances, make_request: Callable[..., Any]) -> Ask:
+def ask(defaults, make_request) -> Ask:
     """Resolve the tolerances of a goal."""
 
     def resolve(**options: Any) -> Tolerances:
@@ -38,7 +38,7 @@ def ask(defaults: Tolerances, make_request: Callable[..., Any]) -> Ask:
     return resolve
 
 
-def test_get_segment_tolerances(ask: Ask):
+def test_get_segment_tolerances(ask):
     resolved = ask(
         path_tolerance=[JointTolerance(name, 0.2, 0.3, 0.4) for name in JOINTS],
         goal_tolerance=[
@@ -54,7 +54,7 @@ def test_get_segment_tolerances(ask: Ask):
     assert resolved.goal.values.T.tolist() == [[1.1, 2.1, 3.1], [1.2, 2.2, 3.2], [1.3, 2.3, 3.3]]
 
 
-def test_deactivate_tolerances(ask: Ask):
+def test_deactivate_tolerances(ask):
     off = [JointTolerance(name, -1.0, -1.0, -1.0) for name in JOINTS]
     resolved = ask(path_tolerance=off, goal_tolerance=off, goal_time_tolerance_s=-1.0)
 
@@ -65,23 +65,23 @@ def test_deactivate_tolerances(ask: Ask):
 
 @pytest.mark.parametrize("where", ["path_tolerance", "goal_tolerance"])
 @pytest.mark.parametrize("quantity", ["position", "velocity", "acceleration"])
-def test_invalid_tolerances(ask: Ask, where: str, quantity: str):
+def test_invalid_tolerances(ask, where, quantity):
     with pytest.raises(ToleranceError, match=f"{quantity} tolerance of joint 'j0' is -123"):
         ask(**{where: [JointTolerance("j0", **{quantity: -123.0})]})
 
 
 @pytest.mark.parametrize("where", ["path_tolerance", "goal_tolerance"])
-def test_invalid_joints(ask: Ask, where: str):
+def test_invalid_joints(ask, where):
     with pytest.raises(ToleranceError, match="no joint 'j123'; the joints are j0, j1, j2"):
         ask(**{where: [JointTolerance("j123", 1.0)]})
 
 
-def test_invalid_goal_time(ask: Ask):
+def test_invalid_goal_time(ask):
     with pytest.raises(ToleranceError, match="goal_time_tolerance is -123"):
         ask(goal_time_tolerance_s=-123.0)
 
 
-def test_zero_asks_for_the_default(ask: Ask, defaults: Tolerances):
+def test_zero_asks_for_the_default(ask, defaults):
     resolved = ask(path_tolerance=[JointTolerance("j1", velocity=0.5)])
 
     assert resolved.path.values[:, 1].tolist() == [0.1, 0.5, INF]
@@ -89,7 +89,7 @@ def test_zero_asks_for_the_default(ask: Ask, defaults: Tolerances):
     assert resolved.goal_time_s == 0.1
 
 
-def test_the_defaults_are_as_the_parameters_say(defaults: Tolerances):
+def test_the_defaults_are_as_the_parameters_say(defaults):
     assert defaults.path.values[:, 0].tolist() == [0.1, INF, INF]
     assert defaults.goal.values[:, 0].tolist() == [0.1, 0.01, INF]
 
@@ -102,20 +102,20 @@ def test_zero_and_less_in_the_parameters_is_no_tolerance():
 
 
 class TestHold:
-    def test_within(self, defaults: Tolerances):
+    def test_within(self, defaults):
         assert defaults.path.hold(np.array([[0.1, -0.1, 0.0]]))
 
-    def test_outside(self, defaults: Tolerances):
+    def test_outside(self, defaults):
         assert not defaults.path.hold(np.array([[0.0, -0.11, 0.0]]))
 
-    def test_rows_without_errors_do_not_count(self, defaults: Tolerances):
+    def test_rows_without_errors_do_not_count(self, defaults):
         assert defaults.goal.hold(np.zeros((1, 3)))
         assert not defaults.goal.hold(np.array([[0.0] * 3, [0.02] * 3]))
 
-    def test_a_broken_sensor_is_outside(self, defaults: Tolerances):
+    def test_a_broken_sensor_is_outside(self, defaults):
         assert not defaults.path.hold(np.array([[np.nan, 0.0, 0.0]]))
 
-    def test_only_that_of_what_is_checked_is(self, ask: Ask):
+    def test_only_that_of_what_is_checked_is(self, ask):
         bounds = ask(path_tolerance=[JointTolerance("j0", -1.0)]).path
 
         assert bounds.hold(np.array([[np.nan, 0.0, 0.0], [np.nan, 0.0, 0.0]]))
@@ -123,13 +123,13 @@ class TestHold:
             "position error of joint j2 is nan, tolerance 0.100000"
         )
 
-    def test_what_is_not_checked_is_never_outside(self, defaults: Tolerances):
+    def test_what_is_not_checked_is_never_outside(self, defaults):
         off = defaults.switched_off()
 
         assert off.path.hold(np.full((3, 3), 1e9))
         assert off.goal.hold(np.full((3, 3), np.nan))
 
-    def test_the_culprit_is_named(self, defaults: Tolerances):
+    def test_the_culprit_is_named(self, defaults):
         assert defaults.goal.excess(np.array([[0.0] * 3, [0.0, 0.5, 0.0]]), JOINTS) == (
             "velocity error of joint j1 is 0.500000, tolerance 0.010000"
         )

@@ -12,11 +12,9 @@ from arm_control.controllers.joint_trajectory.trajectory import Interpolation, T
 NOW_S = 100.0
 EPS = 1e-8
 
-MakeRequest = Callable[..., Any]
-
 
 @pytest.fixture
-def make_profile(make_request: MakeRequest) -> Callable[..., MotionProfile]:
+def make_profile(make_request) -> Callable[..., MotionProfile]:
     """Make the profile of one joint from points, starting at [position, velocity, acceleration]."""
 
     def make(
@@ -37,7 +35,7 @@ def rows(profile: MotionProfile, time_s: float) -> list[float]:
     return profile.sample(time_s)[:3, 0].tolist()
 
 
-def test_sample_trajectory_positions(make_profile: Callable[..., MotionProfile]):
+def test_sample_trajectory_positions(make_profile):
     profile = make_profile([(1.0, [1.0]), (2.0, [2.0]), (3.0, [3.0])])
 
     assert rows(profile, 0.0) == pytest.approx([0.0, 1.0, 0.0], abs=EPS)
@@ -50,9 +48,7 @@ def test_sample_trajectory_positions(make_profile: Callable[..., MotionProfile])
 
 
 @pytest.mark.parametrize("start", [(0.0, 0.0), (0.0,)], ids=["velocity known", "strange"])
-def test_sample_trajectory_velocity_with_interpolation(
-    make_profile: Callable[..., MotionProfile], start: tuple[float, ...]
-):
+def test_sample_trajectory_velocity_with_interpolation(make_profile, start):
     profile = make_profile([(1.0, [], [1.0]), (2.0, [], [2.0]), (3.0, [], [1.0])], start)
 
     assert rows(profile, 0.0) == pytest.approx([0.0, 0.0, 1.0], abs=EPS)
@@ -65,9 +61,7 @@ def test_sample_trajectory_velocity_with_interpolation(
     assert rows(profile, 3.125) == pytest.approx([3.5, 1.0, 0.0], abs=EPS)
 
 
-def test_sample_trajectory_acceleration_with_interpolation(
-    make_profile: Callable[..., MotionProfile],
-):
+def test_sample_trajectory_acceleration_with_interpolation(make_profile):
     profile = make_profile(
         [(1.0, [], [], [1.0]), (2.0, [], [], [2.0]), (3.0, [], [], [1.0])], (0.0, 0.0)
     )
@@ -79,7 +73,7 @@ def test_sample_trajectory_acceleration_with_interpolation(
     assert rows(profile, 3.125) == pytest.approx([4.25, 3.5, 1.0], abs=EPS)
 
 
-def test_fill_point_before_with_same_degree_as_traj(make_profile: Callable[..., MotionProfile]):
+def test_fill_point_before_with_same_degree_as_traj(make_profile):
     profile = make_profile([(1.0, [1.0], [0.0], [0.0]), (2.0, [2.0], [0.0], [0.0])])
 
     assert rows(profile, 0.0) == pytest.approx([0.0, 0.0, 0.0], abs=EPS)
@@ -87,7 +81,7 @@ def test_fill_point_before_with_same_degree_as_traj(make_profile: Callable[..., 
     assert rows(profile, 0.25)[0] == pytest.approx(0.103515625, abs=EPS)
 
 
-def test_skip_interpolation(make_profile: Callable[..., MotionProfile]):
+def test_skip_interpolation(make_profile):
     points = [(1.0, [1.0]), (2.0, [2.0]), (3.0, [3.0])]
     profile = make_profile(points, interpolation=Interpolation.NONE)
 
@@ -95,7 +89,7 @@ def test_skip_interpolation(make_profile: Callable[..., MotionProfile]):
     assert sampled == [0.0, 0.0, 2.0, 2.0, 3.0, 3.0, 3.0]
 
 
-def test_a_trajectory_can_be_planned_again(make_request: MakeRequest):
+def test_a_trajectory_can_be_planned_again(make_request):
     trajectory = Trajectory(make_request([(1.0, [1.0]), (2.0, [2.0])], ["j"]), ["j"])
     start = np.array([[0.0], [np.nan], [np.nan], [np.nan]])
 
@@ -107,23 +101,19 @@ def test_a_trajectory_can_be_planned_again(make_request: MakeRequest):
     assert rows(second, 1.5)[0] == 1.5
 
 
-def test_sample_velocity_only_skipped_last_segment_deduces_positions(
-    make_profile: Callable[..., MotionProfile],
-):
+def test_sample_velocity_only_skipped_last_segment_deduces_positions(make_profile):
     profile = make_profile([(1.0, [0.0], [1.0]), (2.0, [], [1.0]), (2.001, [], [1.0])])
 
     assert rows(profile, 3.0) == pytest.approx([1.001, 1.0, 0.0], abs=EPS)
 
 
-def test_sample_velocity_only_past_the_end_at_once(make_profile: Callable[..., MotionProfile]):
+def test_sample_velocity_only_past_the_end_at_once(make_profile):
     profile = make_profile([(0.001, [], [1.0]), (0.002, [], [1.0])], (0.5,))
 
     assert rows(profile, 10.0) == pytest.approx([0.5015, 1.0, 0.0], abs=EPS)
 
 
-def test_velocities_are_integrated_from_the_given_position_before(
-    make_profile: Callable[..., MotionProfile],
-):
+def test_velocities_are_integrated_from_the_given_position_before(make_profile):
     profile = make_profile([(1.0, [5.0]), (2.0, [], [2.0]), (3.0, [9.0]), (4.0, [], [2.0])])
 
     assert [rows(profile, t)[0] for t in (1.0, 2.0, 3.0, 4.0)] == pytest.approx(
@@ -131,29 +121,27 @@ def test_velocities_are_integrated_from_the_given_position_before(
     )
 
 
-def test_a_stamp_in_the_future_postpones_the_points(make_profile: Callable[..., MotionProfile]):
+def test_a_stamp_in_the_future_postpones_the_points(make_profile):
     profile = make_profile([(1.0, [1.0]), (2.0, [2.0])], stamp_s=NOW_S + 3.0)
 
     assert rows(profile, 2.0)[0] == pytest.approx(0.5)
     assert profile.end_s == pytest.approx(5.0)
 
 
-def test_velocities_stamped_in_the_past_are_integrated_from_the_first_point(
-    make_profile: Callable[..., MotionProfile],
-):
+def test_velocities_stamped_in_the_past_are_integrated_from_the_first_point(make_profile):
     profile = make_profile([(1.0, [], [2.0]), (3.0, [], [2.0])], (1.0,), stamp_s=NOW_S - 2.0)
 
     assert rows(profile, 0.0)[0] == pytest.approx(3.0)
     assert rows(profile, 1.0)[0] == pytest.approx(5.0)
 
 
-def test_joints_come_in_any_order(make_request: MakeRequest):
+def test_joints_come_in_any_order(make_request):
     request = make_request([(1.0, [3.0, 1.0, 2.0])], ["c", "a", "b"])
 
     assert Trajectory(request, ["a", "b", "c"]).motions[0, 0].tolist() == [1.0, 2.0, 3.0]
 
 
-def test_joints_not_named_stand_still(make_request: MakeRequest):
+def test_joints_not_named_stand_still(make_request):
     request = make_request([(1.0, [3.0], [1.0]), (2.0, [4.0], [0.0])], ["b"])
     start = np.full((4, 2), np.nan)
     start[0] = [0.5, 0.0]
@@ -166,7 +154,7 @@ def test_joints_not_named_stand_still(make_request: MakeRequest):
     assert profile.sample(1.5)[:3, 0].tolist() == [0.7, 0.0, 0.0]
 
 
-def test_joints_not_named_stand_still_while_others_are_integrated(make_request: MakeRequest):
+def test_joints_not_named_stand_still_while_others_are_integrated(make_request):
     request = make_request([(1.0, [], [1.0]), (2.0, [], [1.0])], ["b"])
     start = np.full((4, 2), np.nan)
     start[0] = [0.5, 0.0]
@@ -178,7 +166,7 @@ def test_joints_not_named_stand_still_while_others_are_integrated(make_request: 
     assert profile.sample(2.0)[0] == pytest.approx([0.5, 1.5])
 
 
-def test_a_continuous_joint_takes_the_shortest_rotation(make_request: MakeRequest):
+def test_a_continuous_joint_takes_the_shortest_rotation(make_request):
     request = make_request([(1.0, [1.5 * np.pi])], ["j"])
     start = np.array([[0.0], [np.nan], [np.nan], [np.nan]])
 

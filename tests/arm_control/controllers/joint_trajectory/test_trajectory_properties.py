@@ -64,7 +64,7 @@ def around(function: Callable, time_s: float) -> tuple[np.ndarray, np.ndarray]:
 
 @unhurried
 @given(way_points())
-def test_every_waypoint_is_reached_exactly(points: tuple[np.ndarray, np.ndarray]):
+def test_every_waypoint_is_reached_exactly(points):
     times, motions_there = points
     spline = Spline(times, motions_there)
 
@@ -73,7 +73,7 @@ def test_every_waypoint_is_reached_exactly(points: tuple[np.ndarray, np.ndarray]
 
 
 @pytest.mark.parametrize(("degree", "continuous_rows"), [(1, 1), (3, 2), (5, 3)])
-def test_continuity_at_waypoints(degree: int, continuous_rows: int):
+def test_continuity_at_waypoints(degree, continuous_rows):
     @unhurried
     @given(way_points(degree))
     def check(points: tuple[np.ndarray, np.ndarray]) -> None:
@@ -89,7 +89,7 @@ def test_continuity_at_waypoints(degree: int, continuous_rows: int):
 
 @unhurried
 @given(profiles())
-def test_the_end_lasts(profile: SplineProfile):
+def test_the_end_lasts(profile):
     end = profile.sample(max(profile.end_s, 0.0))
 
     assert profile.sample(max(profile.end_s, 0.0) + 7.0).tolist() == end.tolist()
@@ -97,7 +97,7 @@ def test_the_end_lasts(profile: SplineProfile):
 
 @unhurried
 @given(profiles(), st.lists(st.floats(0.0, 30.0), min_size=1, max_size=8))
-def test_a_sample_does_not_depend_on_the_samples_before(profile: SplineProfile, times: list[float]):
+def test_a_sample_does_not_depend_on_the_samples_before(profile, times):
     """Upstream keeps a cursor in the trajectory; here a sample is a function of time alone."""
     alone = [profile.sample(time_s).tolist() for time_s in times]
     backwards = [profile.sample(time_s).tolist() for time_s in reversed(times)]
@@ -107,7 +107,7 @@ def test_a_sample_does_not_depend_on_the_samples_before(profile: SplineProfile, 
 
 @unhurried
 @given(profiles(), st.floats(0.0, 30.0))
-def test_nothing_is_left_open(profile: SplineProfile, time_s: float):
+def test_nothing_is_left_open(profile, time_s):
     assert np.isfinite(profile.sample(time_s)).all()
 
 
@@ -119,9 +119,7 @@ def test_nothing_is_left_open(profile: SplineProfile, time_s: float):
     st.sampled_from([RESOLUTION_S, 1e-3, 1.0, 2.0**31]),
     st.floats(0.0, 1.0),
 )
-def test_no_number_that_is_taken_overflows(
-    points: list[list[float]], gap_s: float, fraction: float
-):
+def test_no_number_that_is_taken_overflows(points, gap_s, fraction):
     motions_there = np.full((len(points), 4, JOINTS), np.nan)
     motions_there[:, :3] = np.reshape(points, (-1, 3, JOINTS))
     times = np.array([gap_s * (1 + i) for i in range(len(points))])
@@ -135,9 +133,7 @@ def test_no_number_that_is_taken_overflows(
 
 @unhurried
 @given(way_points(), st.floats(0.0, 1.0))
-def test_velocity_and_acceleration_are_derivatives(
-    points: tuple[np.ndarray, np.ndarray], fraction: float
-):
+def test_velocity_and_acceleration_are_derivatives(points, fraction):
     times, motions_there = points
     spline = Spline(times, motions_there)
     for begin, end in pairwise(times):
@@ -150,7 +146,7 @@ def test_velocity_and_acceleration_are_derivatives(
 
 @unhurried
 @given(st.lists(st.floats(0.05, 5.0), min_size=1, max_size=5), st.data())
-def test_integrated_velocities_are_followed(gaps: list[float], data: st.DataObject):
+def test_integrated_velocities_are_followed(gaps, data):
     times = np.cumsum(gaps)
     points = np.full((len(times), 4, JOINTS), np.nan)
     points[:, 1] = [[data.draw(numbers) for _ in range(JOINTS)] for _ in times]
@@ -166,7 +162,7 @@ def test_integrated_velocities_are_followed(gaps: list[float], data: st.DataObje
 
 @unhurried
 @given(numbers, numbers)
-def test_the_shortest_rotation_is_short_and_arrives(start: float, end: float):
+def test_the_shortest_rotation_is_short_and_arrives(start, end):
     way = shortest_angular_distance(np.array([start]), np.array([end]))[0]
 
     assert abs(way) <= np.pi + 1e-9
@@ -176,7 +172,7 @@ def test_the_shortest_rotation_is_short_and_arrives(start: float, end: float):
 
 @unhurried
 @given(numbers, numbers)
-def test_the_nearest_turn_is_the_same_angle(start: float, end: float):
+def test_the_nearest_turn_is_the_same_angle(start, end):
     moved = nearest_turn(np.array([start]), np.array([end]), np.array([True]))[0]
 
     assert abs(end - moved) <= np.pi + 1e-9
@@ -185,9 +181,7 @@ def test_the_nearest_turn_is_the_same_angle(start: float, end: float):
 
 @unhurried
 @given(way_points(), motions(degree=5), st.floats(-10.0, 5.0), st.floats(0.01, 3.0))
-def test_a_join_starts_as_commanded_and_ends_as_planned(
-    points: tuple[np.ndarray, np.ndarray], commanded: np.ndarray, offset_s: float, least_s: float
-):
+def test_a_join_starts_as_commanded_and_ends_as_planned(points, commanded, offset_s, least_s):
     times, motions_there = points
     commanded = np.nan_to_num(commanded)
     spline, first_s = Spline(times, motions_there), float(times[0])
@@ -206,9 +200,7 @@ def test_a_join_starts_as_commanded_and_ends_as_planned(
     st.lists(st.floats(0.1, 10.0), min_size=JOINTS, max_size=JOINTS),
     st.floats(0.0, 200.0),
 )
-def test_a_stop_never_turns_back(
-    position: list[float], velocity: list[float], deceleration: list[float], time_s: float
-):
+def test_a_stop_never_turns_back(position, velocity, deceleration, time_s):
     profile = StopProfile(np.array(position), np.array(velocity), np.array(deceleration))
     motion = profile.sample(time_s)
     distance = np.array(velocity) ** 2 / (2.0 * np.array(deceleration))

@@ -1,6 +1,5 @@
 """A driver that does not know where a joint is, for one cycle or permanently."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -8,8 +7,6 @@ import pytest
 
 from arm_control.controllers.goals import GoalOutcome
 from arm_control.controllers.joint_trajectory.goals import ErrorCode
-
-MakeRig = Callable[..., Any]
 
 STAND = (0.5, 0.5, 0.5)
 MOVE = [(2.0, [0.6, 0.6, 0.6])]
@@ -31,7 +28,7 @@ def tick_blindly(rig: Any, kind: str = "position") -> None:
 
 class TestBeginning:
     @pytest.mark.parametrize("options", [{}, {"interpolation_method": "none"}])
-    def test_starts_from_what_was_commanded_last(self, make_rig: MakeRig, options: dict[str, str]):
+    def test_starts_from_what_was_commanded_last(self, make_rig, options):
         rig = make_rig(positions=STAND, **options)
         rig.tick()
         rig.goal(MOVE)
@@ -40,7 +37,7 @@ class TestBeginning:
 
         assert rig.commanded() == pytest.approx([0.5] * 3, abs=0.005)
 
-    def test_joints_that_are_not_named_stay(self, make_rig: MakeRig):
+    def test_joints_that_are_not_named_stay(self, make_rig):
         rig = make_rig(
             commands=("velocity",),
             positions=STAND,
@@ -56,7 +53,7 @@ class TestBeginning:
         assert rig.sink.state.reference[0, 1] == 0.5
         assert rig.commanded("velocity")[1] == 0.0
 
-    def test_the_answer_to_a_query_hides_nothing(self, make_rig: MakeRig):
+    def test_the_answer_to_a_query_hides_nothing(self, make_rig):
         rig = make_rig(positions=STAND)
         tick_blindly(rig)
 
@@ -66,14 +63,14 @@ class TestBeginning:
 
 class TestActivation:
     @pytest.fixture
-    def rig(self, make_rig: MakeRig) -> Any:
+    def rig(self, make_rig):
         """Return a rig that was activated before its hardware knew anything."""
         rig = make_rig(positions=(np.nan,) * 3)
         rig.moves = False
         rig.tick(3)
         return rig
 
-    def test_holds_the_positions_as_soon_as_they_are_known(self, rig: Any):
+    def test_holds_the_positions_as_soon_as_they_are_known(self, rig):
         assert np.isnan(rig.commanded()).all()
 
         rig.place(STAND)
@@ -84,7 +81,7 @@ class TestActivation:
         rig.tick()
         assert rig.commanded().tolist() == list(STAND)
 
-    def test_a_goal_waits_until_that_is_known(self, rig: Any):
+    def test_a_goal_waits_until_that_is_known(self, rig):
         rig.goal(MOVE)
         rig.run(0.5)
         assert np.isnan(rig.commanded()).all()
@@ -98,7 +95,7 @@ class TestActivation:
 
 
 class TestStopping:
-    def test_a_cancel_holds_the_last_command(self, make_rig: MakeRig):
+    def test_a_cancel_holds_the_last_command(self, make_rig):
         rig = make_rig(positions=STAND)
         rig.goal(MOVE)
         rig.run(1.0)
@@ -109,7 +106,7 @@ class TestStopping:
 
         assert rig.commanded() == pytest.approx(before, abs=0.001)
 
-    def test_so_does_a_tolerance_that_is_violated(self, make_rig: MakeRig):
+    def test_so_does_a_tolerance_that_is_violated(self, make_rig):
         rig = make_rig(positions=STAND, constraints__j1__trajectory=0.1)
         rig.goal(MOVE)
         rig.run(1.0)
@@ -120,7 +117,7 @@ class TestStopping:
         assert rig.result is not None
         assert rig.commanded() == pytest.approx(before, abs=0.001)
 
-    def test_so_does_a_time_out(self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture):
+    def test_so_does_a_time_out(self, make_rig, caplog):
         rig = make_rig(positions=STAND, cmd_timeout=0.1)
         rig.trajectory(MOVE)
         while "Aborted due to command timeout" not in caplog.text:
@@ -131,9 +128,7 @@ class TestStopping:
         assert rig.commanded().tolist() == [0.5, 0.6, 0.5]
 
     @pytest.mark.parametrize("kind", ["position", "velocity"])
-    def test_braking_while_unmeasured_does_not_end_at_nan(
-        self, make_rig: MakeRig, robot_description: Callable[..., str], kind: str
-    ):
+    def test_braking_while_unmeasured_does_not_end_at_nan(self, make_rig, robot_description, kind):
         rig = make_rig(positions=STAND, robot_description=robot_description(), **BRAKES)
         rig.goal(MOVE)
         rig.run(1.0)
@@ -149,7 +144,7 @@ class TestGoals:
     """No goal succeeds on a state that is not a number."""
 
     @pytest.mark.parametrize("kind", ["position", "velocity"])
-    def test_a_goal_is_aborted_and_names_the_state(self, make_rig: MakeRig, kind: str):
+    def test_a_goal_is_aborted_and_names_the_state(self, make_rig, kind):
         rig = make_rig(positions=STAND)
         rig.goal(MOVE)
         rig.run(1.0)
@@ -162,7 +157,7 @@ class TestGoals:
         sentence = f"state j1/{kind} is not a number, so the goal cannot be checked"
         assert sentence in rig.result.message
 
-    def test_a_goal_with_time_to_spare_waits_that_long(self, make_rig: MakeRig):
+    def test_a_goal_with_time_to_spare_waits_that_long(self, make_rig):
         rig = make_rig(positions=STAND, constraints__goal_time=1.0)
         rig.goal(MOVE)
         rig.run(1.9)
@@ -177,7 +172,7 @@ class TestGoals:
         rig.tick(2)
         assert rig.result.code is ErrorCode.SUCCESSFUL
 
-    def test_the_time_to_spare_ends(self, make_rig: MakeRig):
+    def test_the_time_to_spare_ends(self, make_rig):
         rig = make_rig(positions=STAND, constraints__goal_time=1.0)
         rig.goal(MOVE)
         rig.run(1.9)
@@ -187,7 +182,7 @@ class TestGoals:
         assert rig.result.outcome is GoalOutcome.ABORTED
         assert "states j0/position, j1/position, j2/position are not numbers" in rig.result.message
 
-    def test_a_violated_path_names_the_unmeasured_states(self, make_rig: MakeRig):
+    def test_a_violated_path_names_the_unmeasured_states(self, make_rig):
         rig = make_rig(positions=STAND, constraints__j1__trajectory=0.1)
         rig.goal(MOVE)
         rig.run(1.0)
@@ -196,9 +191,7 @@ class TestGoals:
         assert rig.result.code is ErrorCode.PATH_TOLERANCE_VIOLATED
         assert "state j1/position is not a number" in rig.result.message
 
-    def test_a_goal_that_waits_for_a_position_is_logged(
-        self, make_rig: MakeRig, caplog: pytest.LogCaptureFixture
-    ):
+    def test_a_goal_that_waits_for_a_position_is_logged(self, make_rig, caplog):
         rig = make_rig(positions=(0.1, np.nan, 0.1))
         rig.moves = False
         rig.tick()

@@ -1,6 +1,5 @@
 """Which trajectories are refused, in which order, with which words."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -66,14 +65,14 @@ class TestInvalidMessage:
         assert fault.code is ErrorCode.INVALID_JOINTS
 
     @pytest.mark.parametrize("size", [0, 1, 2, 4])
-    def test_positions_of_another_size(self, size: int):
+    def test_positions_of_another_size(self, size):
         assert message(with_first(positions=[0.0] * size)) == (
             f"Mismatch between joint_names size (3) and positions ({size}) at point #0."
         )
 
     @pytest.mark.parametrize("field", ["velocities", "accelerations"])
     @pytest.mark.parametrize("size", [1, 4])
-    def test_derivatives_of_another_size(self, field: str, size: int):
+    def test_derivatives_of_another_size(self, field, size):
         assert message(with_first(**{field: [0.0] * size})) == (
             f"Mismatch between joint_names size (3) and {field} ({size}) at point #0."
         )
@@ -119,7 +118,7 @@ def test_a_subset_is_taken_where_that_is_allowed():
     "fields",
     [{"positions": []}, {"positions": [], "velocities": [], "accelerations": [1.0, 1.0, 1.0]}],
 )
-def test_missing_positions_message_accepted(fields: dict[str, Any]):
+def test_missing_positions_message_accepted(fields):
     assert find_fault(with_first(**fields), INTEGRATING) is None
 
 
@@ -162,7 +161,7 @@ class TestStamp:
 class TestBeyondUpstream:
     @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
     @pytest.mark.parametrize("field", ["positions", "velocities", "accelerations"])
-    def test_numbers_that_are_not_finite_are_refused(self, field: str, value: float):
+    def test_numbers_that_are_not_finite_are_refused(self, field, value):
         fault = find_fault(with_first(**{field: [0.0, value, 0.0]}), PARAMETERS)
 
         assert fault is not None
@@ -172,7 +171,7 @@ class TestBeyondUpstream:
         assert fault.code is ErrorCode.INVALID_GOAL
 
     @pytest.mark.parametrize("field", ["positions", "velocities", "accelerations"])
-    def test_numbers_that_polynomials_could_overflow_with_are_refused(self, field: str):
+    def test_numbers_that_polynomials_could_overflow_with_are_refused(self, field):
         assert message(with_first(**{field: [0.0, -1e300, 0.0]})) == (
             f"The {field} of joint j1 at point #0 are too large: -1e+300."
         )
@@ -195,11 +194,11 @@ class TestBeyondUpstream:
         assert fault.code is ErrorCode.INVALID_JOINTS
 
     @pytest.mark.parametrize("time_s", [-0.1, np.nan, np.inf])
-    def test_a_first_point_at_no_usable_time_is_refused(self, time_s: float):
+    def test_a_first_point_at_no_usable_time_is_refused(self, time_s):
         assert "first point" in message(with_first(time_from_start_s=time_s))
 
     @pytest.mark.parametrize("time_s", [np.nan, np.inf])
-    def test_a_later_point_at_no_usable_time_is_refused(self, time_s: float):
+    def test_a_later_point_at_no_usable_time_is_refused(self, time_s):
         late = replace(END, time_from_start_s=time_s)
 
         assert "strictly increasing" in message(replace(GOOD, points=[GOOD_POINT, late]))
@@ -218,9 +217,7 @@ class TestBeyondUpstream:
         (lambda r: replace(_last(r, velocities=[]), stamp_s=0.0), "Time between"),
     ],
 )
-def test_the_first_fault_is_reported(
-    spoil: Callable[[TrajectoryRequest], TrajectoryRequest], begin: str
-):
+def test_the_first_fault_is_reported(spoil, begin):
     worst = TrajectoryRequest(
         JOINTS,
         [TrajectoryPoint(0.5, [np.nan]), TrajectoryPoint(0.5, [1.0], [1.0] * 3, (), [1.0])],

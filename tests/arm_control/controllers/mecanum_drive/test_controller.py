@@ -82,7 +82,7 @@ def bench() -> Bench:
     return Bench()
 
 
-def test_the_registry_knows_it() -> None:
+def test_the_registry_knows_it():
     assert controller_class(TYPE) is MecanumDriveController
 
 
@@ -94,9 +94,7 @@ def test_the_registry_knows_it() -> None:
         (MecanumTwist(yaw=1.0), [-6.0, 6.0, 6.0, -6.0]),
     ],
 )
-def test_each_motion_turns_the_wheels_its_own_way(
-    bench: Bench, twist: MecanumTwist, wheels: list[float]
-) -> None:
+def test_each_motion_turns_the_wheels_its_own_way(bench, twist, wheels):
     bench.start(reference_timeout=1.0)
     assert bench.drive.offer(twist, None) == ""
     bench.tick()
@@ -105,15 +103,13 @@ def test_each_motion_turns_the_wheels_its_own_way(
 
 
 @given(numbers, numbers, numbers, numbers, numbers, st.floats(-pi, pi))
-def test_the_twist_of_the_wheels_is_the_commanded_one(
-    x: float, y: float, yaw: float, base_x: float, base_y: float, base_yaw: float
-) -> None:
+def test_the_twist_of_the_wheels_is_the_commanded_one(x, y, yaw, base_x, base_y, base_yaw):
     geometry = MecanumGeometry(0.05, 0.3, base_x, base_y, base_yaw)
     found = geometry.twist(geometry.wheel_velocities(MecanumTwist(x, y, yaw)))
     assert (found.x, found.y, found.yaw) == pytest.approx((x, y, yaw), abs=1e-9)
 
 
-def test_a_base_frame_beside_the_centre_goes_round_it(bench: Bench) -> None:
+def test_a_base_frame_beside_the_centre_goes_round_it(bench):
     """A twist about the base frame's origin moves the centre sideways."""
     bench.start(**{"reference_timeout": 9.0, "kinematics.base_frame_offset.x": 0.1})
     bench.drive.offer(MecanumTwist(yaw=1.0), None)
@@ -121,7 +117,7 @@ def test_a_base_frame_beside_the_centre_goes_round_it(bench: Bench) -> None:
     assert bench.wheels == pytest.approx([-4.0, 4.0, 8.0, -8.0])
 
 
-def test_a_square_of_three_motions_closes(bench: Bench) -> None:
+def test_a_square_of_three_motions_closes(bench):
     bench.start(reference_timeout=9.0)
     legs = [MecanumTwist(x=1.0), MecanumTwist(y=1.0), MecanumTwist(yaw=pi), MecanumTwist(x=1.0)]
     for leg in [*legs, MecanumTwist(y=1.0)]:
@@ -134,7 +130,7 @@ def test_a_square_of_three_motions_closes(bench: Bench) -> None:
     assert odometry.heading == pytest.approx(pi)
 
 
-def test_an_arc_is_integrated_exactly() -> None:
+def test_an_arc_is_integrated_exactly():
     odometry = MecanumOdometry()
     for _ in range(4):
         odometry.move(MecanumTwist(x=1.0, yaw=pi / 2), 1.0)
@@ -143,7 +139,7 @@ def test_an_arc_is_integrated_exactly() -> None:
     assert (odometry.x, odometry.y) == pytest.approx((2 / pi, 2 / pi))
 
 
-def test_without_a_timeout_a_reference_is_valid_for_one_cycle(bench: Bench) -> None:
+def test_without_a_timeout_a_reference_is_valid_for_one_cycle(bench):
     bench.start()
     bench.drive.offer(MecanumTwist(x=0.5), None)
     bench.tick()
@@ -152,7 +148,7 @@ def test_without_a_timeout_a_reference_is_valid_for_one_cycle(bench: Bench) -> N
     assert bench.wheels == [0.0] * 4
 
 
-def test_after_the_timeout_the_wheels_stand(bench: Bench) -> None:
+def test_after_the_timeout_the_wheels_stand(bench):
     bench.start(reference_timeout=0.1)
     bench.drive.offer(MecanumTwist(x=0.5), None)
     bench.tick(10)
@@ -169,21 +165,19 @@ def test_after_the_timeout_the_wheels_stand(bench: Bench) -> None:
         (MecanumTwist(), 0.5, "its stamp is 0.500 s old, and reference_timeout is 0.1 s"),
     ],
 )
-def test_a_useless_reference_is_refused(
-    bench: Bench, twist: MecanumTwist, stamp_s: float | None, reason: str
-) -> None:
+def test_a_useless_reference_is_refused(bench, twist, stamp_s, reason):
     bench.start(reference_timeout=0.1)
     bench.tick(100)
     assert bench.drive.offer(twist, stamp_s) == reason
 
 
-def test_an_inactive_controller_takes_no_reference(bench: Bench) -> None:
+def test_an_inactive_controller_takes_no_reference(bench):
     bench.start()
     bench.switch("", "base")
     assert bench.drive.offer(MecanumTwist(x=1.0), None) == "the controller is not active"
 
 
-def test_another_controller_commands_it(bench: Bench) -> None:
+def test_another_controller_commands_it(bench):
     bench.configure()
     forward = ForwardCommandController(ControllerContext("forward", 100))
     bench.manager.load_controller(forward, "forward_command_controller/ForwardCommandController")
@@ -200,7 +194,7 @@ def test_another_controller_commands_it(bench: Bench) -> None:
     assert bench.drive.offer(MecanumTwist(), None) == "another controller commands this one"
 
 
-def test_a_wheel_of_unknown_velocity_ends_it(bench: Bench) -> None:
+def test_a_wheel_of_unknown_velocity_ends_it(bench):
     bench.start()
     bench.hardware.states[2] = nan
     bench.manager.read(bench.time_s, PERIOD_S)
@@ -209,7 +203,7 @@ def test_a_wheel_of_unknown_velocity_ends_it(bench: Bench) -> None:
     assert bench.drive.offer(MecanumTwist(), None) == "the controller is not active"
 
 
-def test_values_that_make_no_sense_are_refused() -> None:
+def test_values_that_make_no_sense_are_refused():
     with pytest.raises(ParameterError, match=r"'kinematics.wheels_radius' must be above 0"):
         MecanumDriveController.build_parameters(WHEELS)
 
@@ -222,14 +216,12 @@ def test_values_that_make_no_sense_are_refused() -> None:
         ({"pose_covariance_diagonal": [1.0]}, "takes 6 numbers, not 1"),
     ],
 )
-def test_a_robot_that_cannot_drive_is_refused(
-    bench: Bench, values: dict[str, Any], words: str
-) -> None:
+def test_a_robot_that_cannot_drive_is_refused(bench, values, words):
     with pytest.raises(ControllerManagerError, match=words):
         bench.configure(**values)
 
 
-def test_a_program_s_command_is_the_twist(bench: Bench) -> None:
+def test_a_program_s_command_is_the_twist(bench):
     bench.start()
     bench.drive.take_command([0.1, 0.0, 0.0])
     bench.tick()

@@ -82,24 +82,24 @@ def bench() -> PidBench:
 
 
 @pytest.fixture
-def running(bench: PidBench) -> PidBench:
+def running(bench) -> PidBench:
     bench.configure(set_current_state_as_first_setpoint=False)
     bench.switch("pid")
     bench.measure([0.0, 0.0])
     return bench
 
 
-def test_without_a_reference_it_commands_nothing(running: PidBench) -> None:
+def test_without_a_reference_it_commands_nothing(running):
     assert np.isnan(running.commands_after(3)).all()
 
 
-def test_the_error_times_its_gain_is_commanded(running: PidBench) -> None:
+def test_the_error_times_its_gain_is_commanded(running):
     running.measure([0.5, 0.5])
     assert not running.pid.offer(DOFS, [1.0, 1.0])
     assert running.commands_after() == [5.0, 10.0]
 
 
-def test_the_terms_of_those_that_ask_for_it_are_published_at_any_time(running: PidBench) -> None:
+def test_the_terms_of_those_that_ask_for_it_are_published_at_any_time(running):
     running.measure([0.5, 0.5])
     running.pid.offer(DOFS, [1.0, 1.0])
     running.tick()
@@ -112,7 +112,7 @@ def test_the_terms_of_those_that_ask_for_it_are_published_at_any_time(running: P
     assert last.output == command[1]
 
 
-def test_the_strategy_against_windup_may_change_at_any_time(running: PidBench) -> None:
+def test_the_strategy_against_windup_may_change_at_any_time(running):
     bounded = {"gains.j0.p": 0.0, "gains.j0.i": 100.0, "gains.j0.u_clamp_max": 1.0}
     running.change(**bounded)
     running.pid.offer(DOFS, [1.0, 0.0])
@@ -126,14 +126,14 @@ def test_the_strategy_against_windup_may_change_at_any_time(running: PidBench) -
     assert running.commands_after(10)[0] < 1.0
 
 
-def test_names_may_come_in_any_order_or_not_at_all(running: PidBench) -> None:
+def test_names_may_come_in_any_order_or_not_at_all(running):
     assert not running.pid.offer(["j1", "j0"], [2.0, 1.0])
     assert running.commands_after() == [10.0, 40.0]
     assert not running.pid.offer([], [0.0, 1.0])
     assert running.commands_after() == [0.0, 20.0]
 
 
-def test_a_nan_leaves_a_reference_as_it_is(running: PidBench) -> None:
+def test_a_nan_leaves_a_reference_as_it_is(running):
     running.pid.offer([], [1.0, nan])
     command = running.commands_after()
     assert command[0] == 10.0
@@ -152,14 +152,12 @@ def test_a_nan_leaves_a_reference_as_it_is(running: PidBench) -> None:
         ([], [0.0, inf], [], "it has an infinite value"),
     ],
 )
-def test_references_that_make_no_sense_are_refused(
-    running: PidBench, names: list[str], values: list[float], derivatives: list[float], says: str
-) -> None:
+def test_references_that_make_no_sense_are_refused(running, names, values, derivatives, says):
     assert says in running.pid.offer(names, values, derivatives)
     assert np.isnan(running.commands_after()).all()
 
 
-def test_references_and_states_are_refused_while_it_is_not_configured(bench: PidBench) -> None:
+def test_references_and_states_are_refused_while_it_is_not_configured(bench):
     # Its topics begin after the core and end after it.
     assert bench.pid.offer(DOFS, [0.0, 0.0]) == "the controller is not configured"
     bench.configure()
@@ -168,7 +166,7 @@ def test_references_and_states_are_refused_while_it_is_not_configured(bench: Pid
     assert bench.pid.offer_measured(DOFS, [0.0, 0.0]) == "the controller is not configured"
 
 
-def test_it_holds_the_position_at_its_activation(bench: PidBench) -> None:
+def test_it_holds_the_position_at_its_activation(bench):
     bench.configure()
     bench.measure([0.5, -0.5])
     bench.switch("pid")
@@ -179,9 +177,7 @@ def test_it_holds_the_position_at_its_activation(bench: PidBench) -> None:
 
 
 @pytest.mark.parametrize(("saved", "then"), [(True, 1.02), (False, 0.02)])
-def test_the_integral_grows_and_may_outlast_a_deactivation(
-    bench: PidBench, saved: bool, then: float
-) -> None:
+def test_the_integral_grows_and_may_outlast_a_deactivation(bench, saved, then):
     gains = {"gains.j0.p": 0.0, "gains.j0.i": 2.0, "gains.j1.p": 0.0, "gains.j1.i": 2.0}
     bench.configure(**gains, **{"gains.j0.save_i_term": saved, "gains.j1.save_i_term": False})
     bench.switch("pid")
@@ -201,7 +197,7 @@ def test_the_integral_grows_and_may_outlast_a_deactivation(
 
 
 @pytest.mark.parametrize(("antiwindup", "held"), [(True, 0.48), (False, 0.5)])
-def test_the_integral_itself_can_be_clamped(bench: PidBench, antiwindup: bool, held: float) -> None:
+def test_the_integral_itself_can_be_clamped(bench, antiwindup, held):
     bench.configure(
         **{"gains.j0.p": 0.0, "gains.j0.i": 2.0, "gains.j0.i_clamp_max": 0.5},
         **{"gains.j0.antiwindup": antiwindup, "gains.j1.p": 0.0},
@@ -215,7 +211,7 @@ def test_the_integral_itself_can_be_clamped(bench: PidBench, antiwindup: bool, h
     assert bench.commands_after() == pytest.approx([held, 0.0])
 
 
-def test_one_interface_is_differentiated(bench: PidBench) -> None:
+def test_one_interface_is_differentiated(bench):
     bench.configure(**{"gains.j0.p": 0.0, "gains.j1.p": 0.0, "gains.j0.d": 1.0})
     bench.switch("pid")
     bench.measure([0.0, 0.0])
@@ -226,7 +222,7 @@ def test_one_interface_is_differentiated(bench: PidBench) -> None:
     assert bench.commands_after() == pytest.approx([-10.0, 0.0])
 
 
-def test_with_two_interfaces_the_second_is_the_derivative(bench: PidBench) -> None:
+def test_with_two_interfaces_the_second_is_the_derivative(bench):
     bench.configure(reference_and_state_interfaces=["position", "velocity"], **{"gains.j0.d": 3.0})
     assert bench.pid.reference_names() == (
         "j0/position",
@@ -240,7 +236,7 @@ def test_with_two_interfaces_the_second_is_the_derivative(bench: PidBench) -> No
     assert bench.commands_after() == pytest.approx([10.0 + 3.0 * 1.5, 20.0])
 
 
-def test_the_error_is_the_shortest_rotation(bench: PidBench) -> None:
+def test_the_error_is_the_shortest_rotation(bench):
     bench.configure(**{"gains.j0.angle_wraparound": True})
     bench.switch("pid")
     bench.measure([3.0, 3.0])
@@ -248,7 +244,7 @@ def test_the_error_is_the_shortest_rotation(bench: PidBench) -> None:
     assert bench.commands_after() == pytest.approx([10.0 * (2.0 * pi - 6.0), -120.0])
 
 
-def test_feed_forward_adds_the_reference_when_it_is_on(bench: PidBench) -> None:
+def test_feed_forward_adds_the_reference_when_it_is_on(bench):
     bench.configure(**{"gains.j0.feedforward_gain": 4.0})
     bench.switch("pid")
     bench.measure([1.0, 1.0])
@@ -258,7 +254,7 @@ def test_feed_forward_adds_the_reference_when_it_is_on(bench: PidBench) -> None:
     assert bench.commands_after() == [4.0, 0.0]
 
 
-def test_the_output_is_clamped(bench: PidBench) -> None:
+def test_the_output_is_clamped(bench):
     bench.configure(**{"gains.j0.u_clamp_max": 1.5})
     bench.switch("pid")
     bench.measure([0.0, 0.0])
@@ -266,7 +262,7 @@ def test_the_output_is_clamped(bench: PidBench) -> None:
     assert bench.commands_after() == [1.5, 20.0]
 
 
-def test_gains_can_change_while_it_runs(running: PidBench) -> None:
+def test_gains_can_change_while_it_runs(running):
     running.pid.offer([], [1.0, 1.0])
     values = {
         "dof_names": DOFS,
@@ -278,7 +274,7 @@ def test_gains_can_change_while_it_runs(running: PidBench) -> None:
     assert running.commands_after() == [1.0, 0.0]
 
 
-def test_states_may_come_by_topic(bench: PidBench) -> None:
+def test_states_may_come_by_topic(bench):
     bench.configure(use_external_measured_states=True)
     bench.switch("pid")
     bench.measure([9.0, 9.0])
@@ -288,7 +284,7 @@ def test_states_may_come_by_topic(bench: PidBench) -> None:
     assert bench.commands_after() == [10.0, 10.0]
 
 
-def test_the_state_is_published(running: PidBench) -> None:
+def test_the_state_is_published(running):
     running.measure([0.25, 0.0])
     running.pid.offer([], [1.0, nan])
     running.tick()
@@ -299,7 +295,7 @@ def test_the_state_is_published(running: PidBench) -> None:
     assert running.sink.last("output")[0] == 7.5
 
 
-def test_behind_a_forward_command_controller(running: PidBench) -> None:
+def test_behind_a_forward_command_controller(running):
     top = ForwardCommandController(ControllerContext("top", 100))
     running.manager.load_controller(top, "forward")
     joints = ("pid/j0", "pid/j1")
@@ -320,7 +316,7 @@ def test_behind_a_forward_command_controller(running: PidBench) -> None:
     assert running.pid.exported_states.tolist() == [0.0, 0.5]
 
 
-def test_behind_a_joint_trajectory_controller(running: PidBench) -> None:
+def test_behind_a_joint_trajectory_controller(running):
     running.switch("", "pid")
     running.measure([0.3, -0.4], [0.0, 0.0])
     leader = JointTrajectoryController(ControllerContext("jtc", 100))
@@ -352,15 +348,13 @@ def test_behind_a_joint_trajectory_controller(running: PidBench) -> None:
         ({"reference_and_state_dof_names": ["x"]}, "'dof_names' has 2 names, but .* has 1"),
     ],
 )
-def test_parameters_that_do_not_fit_fail_the_configuration(
-    bench: PidBench, values: dict[str, Any], says: str
-) -> None:
+def test_parameters_that_do_not_fit_fail_the_configuration(bench, values, says):
     gains = {"gains.j0.p": None, "gains.j1.p": None}
     with pytest.raises(ControllerManagerError, match=says):
         bench.configure(**gains, **values)
 
 
-def test_reversed_bounds_are_refused() -> None:
+def test_reversed_bounds_are_refused():
     with pytest.raises(ParameterError, match=r"'gains\.j0\.u_clamp_min' is 2, above u_clamp_max 1"):
         PidController.build_parameters(
             {"dof_names": ["j0"], "gains.j0.u_clamp_min": 2.0, "gains.j0.u_clamp_max": 1.0}
@@ -368,14 +362,14 @@ def test_reversed_bounds_are_refused() -> None:
 
 
 @pytest.mark.parametrize("names", [5, True, "j0"])
-def test_names_that_are_not_a_list_are_refused_in_a_sentence(names: object) -> None:
+def test_names_that_are_not_a_list_are_refused_in_a_sentence(names):
     given = {"dof_names": names}
     assert "dof_names" in {spec.name for spec in PidController.parameter_specs(given)}
     with pytest.raises(ParameterError, match=f"'dof_names' must be a list, not {names!r}"):
         PidController.build_parameters(given)
 
 
-def test_a_program_s_command_is_the_references(running: PidBench) -> None:
+def test_a_program_s_command_is_the_references(running):
     running.pid.take_command([1.0, 0.5])
     running.tick()
     assert running.hardware.commands.tolist() == pytest.approx([10.0, 10.0])

@@ -23,7 +23,7 @@ def followers(shape: tuple[set[int], ...], i: int) -> list[int]:
 
 
 @pytest.fixture
-def build(new_chain: Any) -> Any:
+def build(new_chain):
     """Return a function that makes the controllers of a shape, in an order that is not theirs."""
 
     def make(shape: tuple[set[int], ...]) -> Any:
@@ -40,7 +40,7 @@ def build(new_chain: Any) -> Any:
 
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(shape=SHAPES, requests=REQUESTS)
-def test_links_hold(build: Any, shape: Any, requests: Any) -> None:
+def test_links_hold(build, shape, requests):
     chain = build(shape)
     for activate, deactivate, strictness in requests:
         before = chain.states()
@@ -65,7 +65,7 @@ def test_links_hold(build: Any, shape: Any, requests: Any) -> None:
 
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(shape=SHAPES)
-def test_a_commanding_controller_runs_first(build: Any, shape: Any) -> None:
+def test_a_commanding_controller_runs_first(build, shape):
     order = [status.name for status in build(shape).manager.list_controllers()]
     for i in range(COUNT):
         assert all(order.index(f"c{i}") < order.index(f"c{j}") for j in followers(shape, i))

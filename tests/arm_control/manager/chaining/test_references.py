@@ -13,7 +13,7 @@ JOINTS = ("j0", "j1", "j2", "j3")
 # What is listed
 
 
-def test_exports_are_listed_while_it_is_configured(pair: Any) -> None:
+def test_exports_are_listed_while_it_is_configured(pair):
     pair.link("reader", states=("j0/position",), exported=("sum/position",))
     low, high, reader = map(pair.status, ("low", "high", "reader"))
     assert (low.is_chainable, low.is_chained) == (True, False)
@@ -27,7 +27,7 @@ def test_exports_are_listed_while_it_is_configured(pair: Any) -> None:
     assert pair.status("high").chain_connections == ()
 
 
-def test_chained_mode_is_listed_while_a_controller_commands(pair: Any) -> None:
+def test_chained_mode_is_listed_while_a_controller_commands(pair):
     pair.switch("low")
     assert not pair.status("low").is_chained
     pair.switch("high")
@@ -37,7 +37,7 @@ def test_chained_mode_is_listed_while_a_controller_commands(pair: Any) -> None:
     assert not pair.status("low").is_chained
 
 
-def test_references_are_command_interfaces_available_in_chained_mode(pair: Any) -> None:
+def test_references_are_command_interfaces_available_in_chained_mode(pair):
     reference = "low/x/position"
     assert not pair.interface(reference).is_available
     pair.switch("low")
@@ -55,14 +55,14 @@ def test_references_are_command_interfaces_available_in_chained_mode(pair: Any) 
     assert reference not in [i.name for i in commands]
 
 
-def test_exported_states_are_state_interfaces_while_it_is_active(chain: Any) -> None:
+def test_exported_states_are_state_interfaces_while_it_is_active(chain):
     chain.link("filter", states=("j0/position",), exported=("sum/position",))
     assert not chain.interface("filter/sum/position").is_available
     chain.switch("filter")
     assert chain.interface("filter/sum/position").is_available
 
 
-def test_an_ordinary_controller_is_not_chainable(chain: Any) -> None:
+def test_an_ordinary_controller_is_not_chainable(chain):
     chain.forwarder("plain", ("j0",))
     status = chain.status("plain")
     assert (status.is_chainable, status.is_chained, status.reference_interfaces) == (
@@ -72,14 +72,14 @@ def test_an_ordinary_controller_is_not_chainable(chain: Any) -> None:
     )
 
 
-def test_a_chainable_controller_must_export_something(chain: Any) -> None:
+def test_a_chainable_controller_must_export_something(chain):
     with pytest.raises(ControllerManagerError, match="exports no reference and no state"):
         chain.link("useless", commands=("j0/position",))
     assert chain.states() == {"useless": "unconfigured"}
 
 
 @pytest.mark.parametrize("kind", ["references", "exported"])
-def test_an_export_given_twice_is_refused(chain: Any, kind: str) -> None:
+def test_an_export_given_twice_is_refused(chain, kind):
     with pytest.raises(ControllerManagerError, match=r"exports .* interface a/b more than once"):
         chain.link("double", **{kind: ("a/b", "a/b")})
 
@@ -87,7 +87,7 @@ def test_an_export_given_twice_is_refused(chain: Any, kind: str) -> None:
 # Values
 
 
-def test_commands_go_down_the_chain_within_one_cycle(pair: Any) -> None:
+def test_commands_go_down_the_chain_within_one_cycle(pair):
     top = pair.forwarder("top", ("high/y",))
     assert pair.switch("top high low").ok
     top.offer([1.0])
@@ -96,14 +96,14 @@ def test_commands_go_down_the_chain_within_one_cycle(pair: Any) -> None:
     assert pair.runs == ["high", "low"]
 
 
-def test_without_a_leader_it_follows_its_topic(pair: Any) -> None:
+def test_without_a_leader_it_follows_its_topic(pair):
     pair.links["low"].topic = 5.0
     pair.switch("low")
     pair.bench.tick()
     assert pair.commands()[0] == 6.0
 
 
-def test_in_chained_mode_its_topic_does_not_count(chain: Any) -> None:
+def test_in_chained_mode_its_topic_does_not_count(chain):
     low = chain.link("low", commands=("j0/position",), references=("x/position",))
     top = chain.forwarder("top", ("low/x",))
     chain.switch("low top")
@@ -118,7 +118,7 @@ def test_in_chained_mode_its_topic_does_not_count(chain: Any) -> None:
     assert chain.commands()[0] == 6.0
 
 
-def test_it_begins_with_nothing_to_follow(chain: Any) -> None:
+def test_it_begins_with_nothing_to_follow(chain):
     low = chain.link("low", commands=("j0/position",), references=("x/position",))
     top = chain.forwarder("top", ("low/x",))
     chain.switch("low top")
@@ -129,7 +129,7 @@ def test_it_begins_with_nothing_to_follow(chain: Any) -> None:
     assert np.isnan(low.references).all()
 
 
-def test_one_controller_may_command_hardware_and_references(chain: Any) -> None:
+def test_one_controller_may_command_hardware_and_references(chain):
     low = chain.link("low", commands=("j1/position",), references=("x/position",))
     top = chain.forwarder("top", ("j0", "low/x", "j2"))
     chain.switch("low top")
@@ -139,7 +139,7 @@ def test_one_controller_may_command_hardware_and_references(chain: Any) -> None:
     assert chain.commands()[:3] == [1.0, 3.0, 3.0]
 
 
-def test_exported_states_are_read_in_the_same_cycle(chain: Any) -> None:
+def test_exported_states_are_read_in_the_same_cycle(chain):
     reader = chain.bench.configure("reader", states=("filter/sum/position", "j1/position"))
     chain.link("filter", states=("j0/position", "j1/position"), exported=("sum/position",))
     chain.manager.configure_controller(
@@ -157,9 +157,7 @@ def test_exported_states_are_read_in_the_same_cycle(chain: Any) -> None:
 
 
 @pytest.mark.parametrize("names", ["estimator user", "user estimator"])
-def test_a_commanding_controller_reads_a_state_exported_in_the_same_cycle(
-    chain: Any, names: str
-) -> None:
+def test_a_commanding_controller_reads_a_state_exported_in_the_same_cycle(chain, names):
     """Before the commands, not when the broadcasters' turn comes."""
     states = {
         "raw": ("j0/position",),
@@ -187,7 +185,7 @@ def expected_order(chain: Any) -> list[str]:
 
 
 @pytest.mark.parametrize("order", [(1, 2, 3, 4), (4, 3, 2, 1), (2, 4, 1, 3), (3, 1, 4, 2)])
-def test_the_list_is_sorted_along_the_chain(chain: Any, order: tuple[int, ...]) -> None:
+def test_the_list_is_sorted_along_the_chain(chain, order):
     for n in order:
         commands = (f"c{n - 1}/x/position",) if n > 1 else ("j0/position",)
         chain.link(f"c{n}", commands=commands, references=("x/position",))
@@ -197,7 +195,7 @@ def test_the_list_is_sorted_along_the_chain(chain: Any, order: tuple[int, ...]) 
     assert chain.runs == ["c4", "c3", "c2", "c1"]
 
 
-def test_a_reader_of_all_states_runs_after_the_exporters(chain: Any) -> None:
+def test_a_reader_of_all_states_runs_after_the_exporters(chain):
     chain.link("filter", states=("j0/position",), exported=("sum/position",))
     chain.broadcaster("every")
     assert expected_order(chain) == ["every", "filter"]
@@ -205,14 +203,14 @@ def test_a_reader_of_all_states_runs_after_the_exporters(chain: Any) -> None:
     assert expected_order(chain) == ["filter", "every"]
 
 
-def test_branches_run_before_what_they_share(chain: Any) -> None:
+def test_branches_run_before_what_they_share(chain):
     chain.link("left", commands=("base/x/position",), references=("x/position",))
     chain.link("base", commands=("j0/position",), references=("x/position", "y/position"))
     chain.link("right", commands=("base/y/position",), references=("x/position",))
     assert expected_order(chain) == ["right", "left", "base"]
 
 
-def test_a_reader_runs_after_the_exporter_but_before_whom_it_commands(chain: Any) -> None:
+def test_a_reader_runs_after_the_exporter_but_before_whom_it_commands(chain):
     chain.link(
         "low", commands=("j0/position",), references=("x/position",), exported=("state/position",)
     )

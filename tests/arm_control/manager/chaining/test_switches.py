@@ -15,9 +15,7 @@ STRICTNESSES = pytest.mark.parametrize("strictness", [Strictness.STRICT, Strictn
 
 
 @STRICTNESSES
-def test_a_leader_does_not_start_without_those_that_it_commands(
-    pair: Any, strictness: Strictness
-) -> None:
+def test_a_leader_does_not_start_without_those_that_it_commands(pair, strictness):
     result = pair.switch("high", strictness=strictness)
     assert pair.states() == {"high": "inactive", "low": "inactive"}
     assert result.ok is (strictness is Strictness.BEST_EFFORT)
@@ -29,14 +27,14 @@ def test_a_leader_does_not_start_without_those_that_it_commands(
 
 
 @pytest.mark.parametrize("steps", [("low", "high"), ("low high",), ("high low",)])
-def test_a_chain_starts_one_by_one_from_below_or_at_once(pair: Any, steps: tuple[str, ...]) -> None:
+def test_a_chain_starts_one_by_one_from_below_or_at_once(pair, steps):
     for step in steps:
         assert pair.switch(step).ok
     assert pair.states() == {"high": "active", "low": "active"}
 
 
 @STRICTNESSES
-def test_a_commanded_controller_does_not_stop_alone(pair: Any, strictness: Strictness) -> None:
+def test_a_commanded_controller_does_not_stop_alone(pair, strictness):
     pair.switch("low high")
     result = pair.switch("", "low", strictness)
     assert pair.states() == {"high": "active", "low": "active"}
@@ -48,7 +46,7 @@ def test_a_commanded_controller_does_not_stop_alone(pair: Any, strictness: Stric
         )
 
 
-def test_a_chain_stops_from_above_or_at_once(pair: Any) -> None:
+def test_a_chain_stops_from_above_or_at_once(pair):
     pair.switch("low high")
     assert pair.switch("", "low high").ok
     assert pair.states() == {"high": "inactive", "low": "inactive"}
@@ -57,14 +55,14 @@ def test_a_chain_stops_from_above_or_at_once(pair: Any) -> None:
     assert pair.switch("", "low").ok
 
 
-def test_a_leader_does_not_start_while_whom_it_commands_stops(pair: Any) -> None:
+def test_a_leader_does_not_start_while_whom_it_commands_stops(pair):
     pair.switch("low")
     result = pair.switch("high", "low")
     assert "the following controller with name 'low' will be deactivated." in result.message
     assert pair.states() == {"high": "inactive", "low": "active"}
 
 
-def test_best_effort_leaves_out_the_whole_of_a_broken_chain(pair: Any) -> None:
+def test_best_effort_leaves_out_the_whole_of_a_broken_chain(pair):
     pair.link("top", commands=("high/y/position",), references=("z/position",))
     pair.link("other", commands=("j3/position",), references=("z/position",))
     result = pair.switch("top high other", strictness=Strictness.BEST_EFFORT)
@@ -77,7 +75,7 @@ def test_best_effort_leaves_out_the_whole_of_a_broken_chain(pair: Any) -> None:
     }
 
 
-def test_a_reference_has_one_commander(pair: Any) -> None:
+def test_a_reference_has_one_commander(pair):
     pair.forwarder("rival", ("low/x",))
     pair.switch("low high")
     result = pair.switch("rival")
@@ -89,7 +87,7 @@ def test_a_reference_has_one_commander(pair: Any) -> None:
     assert pair.status("low").is_chained
 
 
-def test_a_reference_without_an_owner_is_not_available(chain: Any) -> None:
+def test_a_reference_without_an_owner_is_not_available(chain):
     chain.forwarder("top", ("nobody/x",))
     assert chain.switch("top").message == (
         "Unable to activate controller 'top' since the command interface 'nobody/x/position' "
@@ -97,14 +95,14 @@ def test_a_reference_without_an_owner_is_not_available(chain: Any) -> None:
     )
 
 
-def test_a_whole_chain_can_be_restarted(pair: Any) -> None:
+def test_a_whole_chain_can_be_restarted(pair):
     pair.switch("low high")
     assert pair.switch("low high", "low high").ok
     assert pair.states() == {"high": "active", "low": "active"}
     assert pair.status("low").is_chained
 
 
-def test_a_chain_one_of_which_cannot_stop_is_not_restarted(pair: Any) -> None:
+def test_a_chain_one_of_which_cannot_stop_is_not_restarted(pair):
     pair.switch("low high")
     low = pair.links["low"]
     parameters, low.refuses_to_stop = low.parameters, True
@@ -119,7 +117,7 @@ def test_a_chain_one_of_which_cannot_stop_is_not_restarted(pair: Any) -> None:
     assert pair.switch("low high").ok
 
 
-def test_a_commanded_controller_is_not_restarted_alone(pair: Any) -> None:
+def test_a_commanded_controller_is_not_restarted_alone(pair):
     pair.switch("low high")
     pair.links["low"].references[:] = 7.0
     result = pair.switch("low", "low", Strictness.BEST_EFFORT)
@@ -129,9 +127,7 @@ def test_a_commanded_controller_is_not_restarted_alone(pair: Any) -> None:
 
 
 @STRICTNESSES
-def test_a_controller_that_is_read_by_name_does_not_stop_alone(
-    chain: Any, strictness: Strictness
-) -> None:
+def test_a_controller_that_is_read_by_name_does_not_stop_alone(chain, strictness):
     chain.link("filter", states=("j0/position",), exported=("sum/position",))
     chain.bench.configure("reader", states=("filter/sum/position",))
     chain.switch("filter reader")
@@ -140,9 +136,7 @@ def test_a_controller_that_is_read_by_name_does_not_stop_alone(
 
 
 @STRICTNESSES
-def test_a_controller_that_reads_all_states_keeps_no_other_from_stopping(
-    chain: Any, strictness: Strictness
-) -> None:
+def test_a_controller_that_reads_all_states_keeps_no_other_from_stopping(chain, strictness):
     chain.link("filter", states=("j0/position",), exported=("sum/position",))
     every = chain.broadcaster("every")
     chain.switch("filter")
@@ -154,7 +148,7 @@ def test_a_controller_that_reads_all_states_keeps_no_other_from_stopping(
     assert chain.states()["every"] == "active"
 
 
-def test_a_reader_of_all_states_starts_after_the_only_exporter_failed_to_stop(chain: Any) -> None:
+def test_a_reader_of_all_states_starts_after_the_only_exporter_failed_to_stop(chain):
     exporter = chain.link("filter", states=("j0/position",), exported=("sum/position",))
     every = chain.broadcaster("every")
     chain.switch("filter")
@@ -166,9 +160,7 @@ def test_a_reader_of_all_states_starts_after_the_only_exporter_failed_to_stop(ch
 
 
 @pytest.mark.parametrize("strictness", [Strictness.STRICT, Strictness.BEST_EFFORT])
-def test_without_whom_it_commands_a_leader_does_not_start(
-    chain: Any, strictness: Strictness
-) -> None:
+def test_without_whom_it_commands_a_leader_does_not_start(chain, strictness):
     chain.link("low", commands=("j0/position",), references=("x/position",)).refuses_to_start = True
     chain.link("high", commands=("low/x/position",), references=("x/position",))
     chain.link("other", commands=("j1/position",), references=("x/position",))
@@ -181,7 +173,7 @@ def test_without_whom_it_commands_a_leader_does_not_start(
     }
 
 
-def test_hardware_gets_only_its_own_interfaces(pair: Any) -> None:
+def test_hardware_gets_only_its_own_interfaces(pair):
     pair.switch("low high")
     assert pair.bench.hardware.mode_switches == [(("j0/position",), ())]
 
@@ -189,7 +181,7 @@ def test_hardware_gets_only_its_own_interfaces(pair: Any) -> None:
 # Failures
 
 
-def test_an_update_that_fails_stops_the_whole_chain(pair: Any) -> None:
+def test_an_update_that_fails_stops_the_whole_chain(pair):
     pair.link("aside", commands=("j3/position",), references=("z/position",))
     pair.switch("low high aside")
     pair.links["low"].fails = True
@@ -198,7 +190,7 @@ def test_an_update_that_fails_stops_the_whole_chain(pair: Any) -> None:
     assert not pair.status("low").is_chained
 
 
-def test_a_failed_update_does_not_stop_a_controller_that_reads_all_states(chain: Any) -> None:
+def test_a_failed_update_does_not_stop_a_controller_that_reads_all_states(chain):
     chain.link("filter", states=("j0/position",), exported=("sum/position",)).fails = True
     chain.broadcaster("every")
     chain.switch("filter")
@@ -207,7 +199,7 @@ def test_a_failed_update_does_not_stop_a_controller_that_reads_all_states(chain:
     assert chain.states() == {"filter": "inactive", "every": "active"}
 
 
-def test_only_the_fallbacks_of_whom_fails_take_over(chain: Any) -> None:
+def test_only_the_fallbacks_of_whom_fails_take_over(chain):
     for name in ("spare_low", "spare_high"):
         chain.link(name, commands=("j0/position",), references=("x/position",))
     low = chain.link(
@@ -230,7 +222,7 @@ def test_only_the_fallbacks_of_whom_fails_take_over(chain: Any) -> None:
     }
 
 
-def test_a_fallback_stops_the_whole_chain_that_claims_its_interfaces(pair: Any) -> None:
+def test_a_fallback_stops_the_whole_chain_that_claims_its_interfaces(pair):
     pair.forwarder("spare", ("j0", "j1"))
     work = pair.link(
         "work", commands=("j1/position",), references=("x/position",), fallback_names=("spare",)
@@ -246,14 +238,14 @@ def test_a_fallback_stops_the_whole_chain_that_claims_its_interfaces(pair: Any) 
     }
 
 
-def test_hardware_that_fails_takes_the_leaders_of_its_users_along(pair: Any) -> None:
+def test_hardware_that_fails_takes_the_leaders_of_its_users_along(pair):
     pair.switch("low high")
     pair.bench.hardware.read_result = HardwareReturn.ERROR
     pair.bench.tick()
     assert pair.states() == {"high": "inactive", "low": "inactive"}
 
 
-def test_shutdown_stops_leaders_first(pair: Any) -> None:
+def test_shutdown_stops_leaders_first(pair):
     seen: list[tuple[str, str]] = []
 
     class Observer:
@@ -271,7 +263,7 @@ def test_shutdown_stops_leaders_first(pair: Any) -> None:
     assert seen[:2] == [("high", "deactivate"), ("low", "deactivate")]
 
 
-def test_a_start_that_fails_leaves_chained_mode(chain: Any) -> None:
+def test_a_start_that_fails_leaves_chained_mode(chain):
     low = chain.link("low", commands=("j0/position",), references=("x/position",))
     chain.switch("low")
     probe = chain.bench.configure("bad", commands=("low/x/position",))

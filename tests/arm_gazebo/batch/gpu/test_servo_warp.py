@@ -25,7 +25,7 @@ MODES = {
 
 
 @pytest.fixture(params=["cpu", "cuda"])
-def device(request: pytest.FixtureRequest) -> str:
+def device(request) -> str:
     if request.param == "cuda" and not wp.get_cuda_device_count():
         pytest.skip("there is no GPU")
     return request.param
@@ -67,9 +67,7 @@ def states(physics, random: np.random.Generator):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_kernels_give_the_bits_of_the_law_on_the_host(
-    kind: str, several_controls: Path, device: str
-):
+def test_the_kernels_give_the_bits_of_the_law_on_the_host(kind, several_controls, device):
     sim = simulation(kind, several_controls)
     physics, random = sim.parts.physics, np.random.default_rng(0)
     model, joints = physics.model, physics.servo.joints
@@ -101,7 +99,7 @@ def test_the_kernels_give_the_bits_of_the_law_on_the_host(
     sim.close()
 
 
-def test_drives_sleep_and_wake_as_on_the_host(several_controls: Path, device: str):
+def test_drives_sleep_and_wake_as_on_the_host(several_controls, device):
     sim = simulation("position", several_controls)
     physics = sim.parts.physics
     model, start = physics.model, start_of(physics, physics.model)

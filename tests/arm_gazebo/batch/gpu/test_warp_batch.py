@@ -28,7 +28,7 @@ ROUNDING = 1e-6
 
 
 @pytest.fixture(params=["cpu", "cuda"])
-def device(request: pytest.FixtureRequest) -> str:
+def device(request) -> str:
     if request.param == "cuda" and not wp.get_cuda_device_count():
         pytest.skip("there is no GPU")
     return request.param
@@ -54,7 +54,7 @@ def goals(sim: Simulation, seed: int = 0, copies: int = COPIES) -> np.ndarray:
 
 
 @pytest.mark.parametrize("robot", ["arm", "mycobot"])
-def test_copies_stay_near_those_on_the_host(robot: str, device: str):
+def test_copies_stay_near_those_on_the_host(robot, device):
     with Simulation(robot, arguments={"camera": "none"} if robot == "arm" else {}) as sim:
         there = on_device(sim, device)
         here = PhysicsBatch(sim.parts.physics, bounds_of(sim), COPIES)
@@ -70,7 +70,7 @@ def test_copies_stay_near_those_on_the_host(robot: str, device: str):
         assert np.abs(there.qvel - here.qvel)[:, addresses[0]].max() < 1e-3
 
 
-def test_actuators_with_several_controls_are_refused_in_a_sentence(several_controls, device: str):
+def test_actuators_with_several_controls_are_refused_in_a_sentence(several_controls, device):
     sentence = "MuJoCo Warp cannot simulate this model: .*mjTRN_SO3"
     with (
         Simulation("arm", world=several_controls, arguments={"camera": "none"}) as sim,
@@ -79,7 +79,7 @@ def test_actuators_with_several_controls_are_refused_in_a_sentence(several_contr
         on_device(sim, device)
 
 
-def test_copies_restart_alone_and_repeat_their_run(arm: Simulation, device: str):
+def test_copies_restart_alone_and_repeat_their_run(arm, device):
     batch, untouched = on_device(arm, device), on_device(arm, device)
     values = goals(arm)
     start = batch.qpos.copy()
@@ -108,7 +108,7 @@ def test_copies_restart_alone_and_repeat_their_run(arm: Simulation, device: str)
 
 
 @pytest.mark.parametrize("number", [np.nan, np.inf, 1e12])
-def test_a_copy_that_becomes_unstable_restarts_alone(arm: Simulation, device: str, number: float):
+def test_a_copy_that_becomes_unstable_restarts_alone(arm, device, number):
     batch, untouched = on_device(arm, device), on_device(arm, device)
     values = goals(arm)
     start = batch.qpos.copy()
@@ -131,7 +131,7 @@ def test_a_copy_that_becomes_unstable_restarts_alone(arm: Simulation, device: st
             assert np.array_equal(batch.qpos[1], first[0][1])
 
 
-def test_links_are_where_the_host_says_and_looking_changes_nothing(arm: Simulation, device: str):
+def test_links_are_where_the_host_says_and_looking_changes_nothing(arm, device):
     batch, alone = on_device(arm, device), on_device(arm, device)
     model, bodies = arm.parts.physics.model, arm.parts.physics.built.bodies
     for _ in range(3):
@@ -156,7 +156,7 @@ def test_links_are_where_the_host_says_and_looking_changes_nothing(arm: Simulati
         batch.link_positions(model.nbody)
 
 
-def test_too_many_contacts_are_a_sentence(device: str, monkeypatch: pytest.MonkeyPatch):
+def test_too_many_contacts_are_a_sentence(device, monkeypatch):
     monkeypatch.setattr(warp_batch, "room_of", lambda model: Room(contacts=3, rows=70))
     with Simulation("mycobot") as sim:
         batch = on_device(sim, device)
@@ -188,7 +188,7 @@ def test_a_solver_at_its_last_iteration_is_no_lack_of_room():
         check_overflow(flags, room)
 
 
-def test_what_mujoco_warp_cannot_simulate_is_a_sentence(arm: Simulation, device: str):
+def test_what_mujoco_warp_cannot_simulate_is_a_sentence(arm, device):
     arm.parts.physics.model.opt.solver = mujoco.mjtSolver.mjSOL_PGS
     with pytest.raises(BatchError, match=r"MuJoCo Warp cannot simulate this model: .*PGS"):
         on_device(arm, device)
@@ -201,9 +201,7 @@ def test_what_mujoco_warp_cannot_simulate_is_a_sentence(arm: Simulation, device:
         (np.full((3, 4), np.nan), "need finite values"),
     ],
 )
-def test_commands_that_are_none_are_refused(
-    arm: Simulation, device: str, values: np.ndarray, problem: str
-):
+def test_commands_that_are_none_are_refused(arm, device, values, problem):
     batch = on_device(arm, device)
     with pytest.raises(BatchError, match=problem):
         batch.advance(values)

@@ -18,7 +18,7 @@ INSTALL_TIMEOUT_S = 150.0
 
 
 @pytest.fixture(scope="module")
-def installed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+def installed(tmp_path_factory) -> Iterator[Path]:
     """Install the package into a folder of its own, which the module's processes look into."""
     folder = tmp_path_factory.mktemp("installation")
     sources, target = folder / "servo_arm", folder / "target"
@@ -34,7 +34,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.fixture(scope="module")
-def launched(installed: Path, run: Any) -> Any:
+def launched(installed, run):
     """Return the running launch of the package."""
     program = run(
         *("-m", "arm_cli", "launch", "servo_arm", "servo_arm.launch.py"),
@@ -46,12 +46,12 @@ def launched(installed: Path, run: Any) -> Any:
 
 
 @pytest.fixture
-def control(launched: Any, client: Any, control_of: Any) -> Any:
+def control(launched, client, control_of):
     return control_of("")
 
 
 @pytest.fixture
-def joint_states(client: Any) -> Any:
+def joint_states(client):
     from sensor_msgs.msg import JointState
 
     return client.subscribe(JointState, "/joint_states")
@@ -71,7 +71,7 @@ def wait_until_at(joint_states: Any, position: float) -> None:
     )
 
 
-def test_its_types_are_found(control: Any) -> None:
+def test_its_types_are_found(control):
     assert "servo_arm/PdController" in control.call("list_controller_types").types
     assert control.states() == {"joint_state_broadcaster": "active", "pd_controller": "active"}
     component = servos(control)
@@ -79,16 +79,14 @@ def test_its_types_are_found(control: Any) -> None:
     assert component.state.label == "active"
 
 
-def test_its_parameters_take_effect_at_once(
-    control: Any, joint_states: Any, set_parameter: Any
-) -> None:
+def test_its_parameters_take_effect_at_once(control, joint_states, set_parameter):
     assert set_parameter("/pd_controller", "target", 0.5).successful
     wait_until_at(joint_states, 0.5)
 
 
 def test_servos_that_were_unplugged_are_used_again(
-    control: Any, client: Any, launched: Any, joint_states: Any, set_parameter: Any
-) -> None:
+    control, client, launched, joint_states, set_parameter
+):
     from lifecycle_msgs.msg import State
 
     (fake,) = launched.processes("servo_arm.fake_servo")

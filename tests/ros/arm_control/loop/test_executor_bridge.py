@@ -24,7 +24,7 @@ def loop() -> Iterator[ControlLoop]:
 
 
 @pytest.fixture
-def bridge() -> Any:
+def bridge():
     import arm_control.loop.ros_executor_bridge
 
     return arm_control.loop.ros_executor_bridge
@@ -39,7 +39,7 @@ def result_of(client: Any, coroutine: Any) -> Any:
     return task.result()
 
 
-def test_the_loops_result_wakes_an_executor_asleep(client: Any, loop: Any, bridge: Any) -> None:
+def test_the_loops_result_wakes_an_executor_asleep(client, loop, bridge):
     async def ask() -> str:
         return await bridge.call_on_loop(
             loop, lambda: threading.current_thread().name, client.executor
@@ -48,9 +48,7 @@ def test_the_loops_result_wakes_an_executor_asleep(client: Any, loop: Any, bridg
     assert result_of(client, ask) == "control loop"
 
 
-def test_a_future_completed_on_another_thread_wakes_an_executor_asleep(
-    client: Any, bridge: Any
-) -> None:
+def test_a_future_completed_on_another_thread_wakes_an_executor_asleep(client, bridge):
     from rclpy.task import Future
 
     future = Future()
@@ -70,9 +68,7 @@ def test_a_future_completed_on_another_thread_wakes_an_executor_asleep(
     thread.join(TIMEOUT_S)
 
 
-def test_what_the_function_raises_comes_out_of_the_await(
-    client: Any, loop: Any, bridge: Any
-) -> None:
+def test_what_the_function_raises_comes_out_of_the_await(client, loop, bridge):
     async def ask() -> str:
         try:
             await bridge.call_on_loop(loop, lambda: 1 // 0, client.executor)
@@ -83,7 +79,7 @@ def test_what_the_function_raises_comes_out_of_the_await(
     assert result_of(client, ask) == "raised"
 
 
-def test_a_loop_that_has_ended_says_so(client: Any, bridge: Any) -> None:
+def test_a_loop_that_has_ended_says_so(client, bridge):
     ended = ControlLoop(lambda: None, Pacer(0.01))
     ended.start()
     ended.stop()
@@ -99,7 +95,7 @@ def test_a_loop_that_has_ended_says_so(client: Any, bridge: Any) -> None:
     assert result_of(client, ask) == "the control loop has ended"
 
 
-def test_a_function_runs_on_the_executors_thread(client: Any, bridge: Any) -> None:
+def test_a_function_runs_on_the_executors_thread(client, bridge):
     threads: list[int] = []
     executors: list[int] = []
     bridge.run_on_executor(client.executor, lambda: threads.append(threading.get_ident()))
@@ -107,9 +103,7 @@ def test_a_function_runs_on_the_executors_thread(client: Any, bridge: Any) -> No
     assert threads == executors != [threading.get_ident()]
 
 
-def test_what_the_executor_has_yet_to_answer_is_answered_first(
-    client: Any, bridge: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_the_executor_has_yet_to_answer_is_answered_first(client, bridge, monkeypatch):
     order: list[str] = []
     asked = threading.Event()
     followed = threading.Event()
@@ -133,7 +127,7 @@ def test_what_the_executor_has_yet_to_answer_is_answered_first(
     assert order == ["answer", "end"]
 
 
-def test_a_function_runs_though_the_executor_does_not(bridge: Any, client: Any) -> None:
+def test_a_function_runs_though_the_executor_does_not(bridge, client):
     from rclpy.executors import SingleThreadedExecutor
 
     idle = SingleThreadedExecutor(context=client.context)
@@ -143,7 +137,7 @@ def test_a_function_runs_though_the_executor_does_not(bridge: Any, client: Any) 
     idle.shutdown()
 
 
-def test_an_executor_that_was_shut_down_is_not_needed(bridge: Any) -> None:
+def test_an_executor_that_was_shut_down_is_not_needed(bridge):
     from rclpy.context import Context
     from rclpy.executors import SingleThreadedExecutor
 

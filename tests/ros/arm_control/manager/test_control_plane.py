@@ -167,12 +167,12 @@ def ending() -> Iterator[ExitStack]:
 
 
 @pytest.fixture
-def ros_bench(ending: ExitStack) -> RosBench:
+def ros_bench(ending) -> RosBench:
     return RosBench(ending)
 
 
 @pytest.fixture
-def loaded(ros_bench: RosBench, ending: ExitStack, monkeypatch: pytest.MonkeyPatch) -> LoadedProbe:
+def loaded(ros_bench, ending, monkeypatch) -> LoadedProbe:
     ending.callback(ros_bench.node.destroy_node)
     loaded = LoadedProbe(ros_bench, monkeypatch)
     ending.callback(loaded.plane.destroy_nodes)
@@ -181,14 +181,12 @@ def loaded(ros_bench: RosBench, ending: ExitStack, monkeypatch: pytest.MonkeyPat
     return loaded
 
 
-def test_a_parameter_set_during_the_configuration_takes_effect(loaded: LoadedProbe) -> None:
+def test_a_parameter_set_during_the_configuration_takes_effect(loaded):
     loaded.set_gain_while_it_is_configured(2.0).result()
     assert loaded.probe.parameters.gain == 2.0
 
 
-def test_a_parameter_set_while_it_is_configured_that_it_refuses_fails_that(
-    loaded: LoadedProbe,
-) -> None:
+def test_a_parameter_set_while_it_is_configured_that_it_refuses_fails_that(loaded):
     loaded.probe.refuses_changes = True
     with pytest.raises(ControllerManagerError, match="was not configured: no gain but the first"):
         loaded.set_gain_while_it_is_configured(2.0).result()
@@ -196,9 +194,7 @@ def test_a_parameter_set_while_it_is_configured_that_it_refuses_fails_that(
     assert loaded.subscriptions() == 0
 
 
-def test_a_parameter_stored_after_the_configuration_takes_effect(
-    loaded: LoadedProbe, ros_bench: RosBench
-) -> None:
+def test_a_parameter_stored_after_the_configuration_takes_effect(loaded, ros_bench):
     from rcl_interfaces.msg import SetParametersResult
 
     def configure(_: object) -> SetParametersResult:
@@ -212,9 +208,7 @@ def test_a_parameter_stored_after_the_configuration_takes_effect(
     assert loaded.probe.parameters.gain == 2.0
 
 
-def test_to_configure_it_asks_nothing_of_the_executor(
-    loaded: LoadedProbe, ros_bench: RosBench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_to_configure_it_asks_nothing_of_the_executor(loaded, ros_bench, monkeypatch):
     # It does not spin yet when a simulation starts its controllers: each request would wait 5 s.
     def refuse(*_: object) -> None:
         pytest.fail("the executor was asked for something")
@@ -224,13 +218,13 @@ def test_to_configure_it_asks_nothing_of_the_executor(
     assert loaded.state is LifecycleState.INACTIVE
 
 
-def test_without_a_change_no_parameters_are_handed_over(loaded: LoadedProbe) -> None:
+def test_without_a_change_no_parameters_are_handed_over(loaded):
     loaded.probe.refuses_changes = True
     loaded.plane.configure_controller("it")
     assert loaded.state is LifecycleState.INACTIVE
 
 
-def test_one_that_could_not_stop_has_its_end_points_once(loaded: LoadedProbe) -> None:
+def test_one_that_could_not_stop_has_its_end_points_once(loaded):
     loaded.fail_to_stop()
     loaded.fail_to_stop()
     loaded.plane.configure_controller("it")
@@ -239,9 +233,7 @@ def test_one_that_could_not_stop_has_its_end_points_once(loaded: LoadedProbe) ->
     assert loaded.subscriptions() == 0
 
 
-def test_one_that_could_not_stop_takes_parameters_when_it_is_configured(
-    loaded: LoadedProbe,
-) -> None:
+def test_one_that_could_not_stop_takes_parameters_when_it_is_configured(loaded):
     loaded.fail_to_stop()
     loaded.probe.refuses_changes = True
     assert loaded.set_gain(3.0)
@@ -249,9 +241,7 @@ def test_one_that_could_not_stop_takes_parameters_when_it_is_configured(
     assert loaded.probe.parameters.gain == 3.0
 
 
-def test_warnings_of_overruns_can_be_switched_off_at_any_time(
-    ros_bench: RosBench, ending: ExitStack
-) -> None:
+def test_warnings_of_overruns_can_be_switched_off_at_any_time(ros_bench, ending):
     from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
 
     server = ControllerManagerServer(
@@ -265,9 +255,7 @@ def test_warnings_of_overruns_can_be_switched_off_at_any_time(
         assert ros_bench.loop.pacer.print_warnings is value
 
 
-def test_a_controller_whose_callback_is_a_coroutine_is_not_configured(
-    loaded: LoadedProbe, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_controller_whose_callback_is_a_coroutine_is_not_configured(loaded, monkeypatch):
     from std_srvs.srv import Trigger
 
     from arm_control.controllers.forward_command.ros import ForwardCommandAdapter

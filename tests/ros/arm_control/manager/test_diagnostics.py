@@ -11,7 +11,7 @@ OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"
 
 
 @pytest.fixture(scope="module")
-def manager(run_manager: Any) -> Any:
+def manager(run_manager):
     """Return a manager that does not mind a busy computer, and reports ten times a second."""
     kinds, figures, levels = (
         ("controllers", "hardware_components"),
@@ -40,7 +40,7 @@ def manager(run_manager: Any) -> Any:
 
 
 @pytest.fixture
-def wait_for_report(client: Any) -> Callable[..., Any]:
+def wait_for_report(client) -> Callable[..., Any]:
     """Return a function that waits for a task's report of a kind."""
     from diagnostic_msgs.msg import DiagnosticArray
 
@@ -65,7 +65,7 @@ def values_of(status: Any) -> dict[str, str]:
     return {item.key: item.value for item in status.values}
 
 
-def test_it_is_published_by_the_manager_reliably(control: Any, client: Any) -> None:
+def test_it_is_published_by_the_manager_reliably(control, client):
     control.list()
     read = client.node.get_publishers_info_by_topic
     # The name of its node arrives later than the end point.
@@ -78,7 +78,7 @@ def test_it_is_published_by_the_manager_reliably(control: Any, client: Any) -> N
     assert end_point.qos_profile.durability.name == "VOLATILE"
 
 
-def test_each_message_has_all_tasks_of_one_hardware_id(client: Any, control: Any) -> None:
+def test_each_message_has_all_tasks_of_one_hardware_id(client, control):
     from diagnostic_msgs.msg import DiagnosticArray
 
     message = client.subscribe(DiagnosticArray, "/diagnostics").wait_for(1)[0]
@@ -87,7 +87,7 @@ def test_each_message_has_all_tasks_of_one_hardware_id(client: Any, control: Any
     assert message.header.stamp.sec > 0
 
 
-def test_it_follows_what_the_manager_does(control: Any, wait_for_report: Any) -> None:
+def test_it_follows_what_the_manager_does(control, wait_for_report):
     status = wait_for_report(0, lambda s: "No controllers" in s.message, "none loaded")
     assert (status.level, status.message) == (WARN, "No controllers are currently loaded")
     control.start("position_controller")
@@ -103,7 +103,7 @@ def test_it_follows_what_the_manager_does(control: Any, wait_for_report: Any) ->
     assert float(values_of(status)["periodicity.average"]) == pytest.approx(100.0, rel=1e-3)
 
 
-def test_why_a_request_was_refused_can_be_read(control: Any, wait_for_report: Any) -> None:
+def test_why_a_request_was_refused_can_be_read(control, wait_for_report):
     assert not control.load("nothere")
     assert not control.switch(["nothere"]).ok
     status = wait_for_report(0, lambda s: "switch_controller" in values_of(s), "a refusal")
@@ -117,9 +117,7 @@ def test_why_a_request_was_refused_can_be_read(control: Any, wait_for_report: An
     assert "nothere.load_controller" in values_of(status)
 
 
-def test_changed_thresholds_take_effect_immediately(
-    control: Any, wait_for_report: Any, set_parameter: Any
-) -> None:
+def test_changed_thresholds_take_effect_immediately(control, wait_for_report, set_parameter):
     control.start("position_controller")
     wait_for_report(0, lambda s: s.level == OK, "nothing wrong")
     name = f"{TIMES}.mean_error.error"
@@ -135,7 +133,7 @@ def test_changed_thresholds_take_effect_immediately(
     wait_for_report(0, lambda s: s.level == OK, "nothing wrong")
 
 
-def test_a_stuck_loop_is_reported_while_it_is_stuck(manager: Any, wait_for_report: Any) -> None:
+def test_a_stuck_loop_is_reported_while_it_is_stuck(manager, wait_for_report):
     manager.tell("block")
     try:
         status = wait_for_report(2, lambda s: "stuck" in s.message, "a stuck loop")
@@ -153,9 +151,7 @@ def test_a_stuck_loop_is_reported_while_it_is_stuck(manager: Any, wait_for_repor
         ("hardwareinterface", "hardwareinterface"),
     ],
 )
-def test_the_level_of_a_logger_can_be_read_and_set(
-    client: Any, control: Any, node: str, name: str
-) -> None:
+def test_the_level_of_a_logger_can_be_read_and_set(client, control, node, name):
     from rcl_interfaces.msg import LoggerLevel
     from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 
@@ -174,7 +170,7 @@ def test_the_level_of_a_logger_can_be_read_and_set(
     assert client.call(SetLoggerLevels, set_levels, request).results[0].successful
 
 
-def test_a_manager_without_a_robot_says_what_it_waits_for(run: Any, client: Any) -> None:
+def test_a_manager_without_a_robot_says_what_it_waits_for(run, client):
     from diagnostic_msgs.msg import DiagnosticArray
 
     program = run(

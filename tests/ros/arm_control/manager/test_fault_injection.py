@@ -23,7 +23,7 @@ PARAMETERS = {
 
 
 @pytest.fixture(scope="module")
-def faulty_package(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+def faulty_package(tmp_path_factory) -> Iterator[None]:
     """Offer the faulty controller as an installed package does."""
     place = tmp_path_factory.mktemp("site")
     information = place / "test_faults-1.0.dist-info"
@@ -38,13 +38,13 @@ def faulty_package(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 
 @pytest.fixture(scope="module")
-def manager(run_manager: Any, faulty_package: None) -> Any:
+def manager(run_manager, faulty_package):
     """Return the module's manager, which knows the faulty controller."""
     return run_manager(parameters=PARAMETERS)
 
 
 @pytest.fixture
-def fail(set_parameter: Any) -> Callable[[str], None]:
+def fail(set_parameter) -> Callable[[str], None]:
     """Return a function that makes the faulty controller fail."""
 
     def set_fault(fault: str) -> None:
@@ -54,7 +54,7 @@ def fail(set_parameter: Any) -> Callable[[str], None]:
 
 
 @pytest.fixture
-def reports(client: Any) -> Any:
+def reports(client):
     """Return what is published on /diagnostics."""
     from diagnostic_msgs.msg import DiagnosticArray
 
@@ -73,9 +73,7 @@ def activity(client: Any) -> Any:
 
 
 @pytest.mark.parametrize("fault", ["raise", "error"])
-def test_a_failing_controller_is_replaced_by_its_fallback(
-    control: Any, client: Any, manager: Any, fail: Any, fault: str
-) -> None:
+def test_a_failing_controller_is_replaced_by_its_fallback(control, client, manager, fail, fault):
     for name in ("spare", "faulty", "bystander"):
         assert control.load(name)
         assert control.configure(name)
@@ -94,9 +92,7 @@ def test_a_failing_controller_is_replaced_by_its_fallback(
     )
 
 
-def test_a_blocking_controller_overruns_and_services_still_answer(
-    control: Any, manager: Any, fail: Any, reports: Any
-) -> None:
+def test_a_blocking_controller_overruns_and_services_still_answer(control, manager, fail, reports):
     assert control.load("spare")
     assert control.configure("spare")
     control.start("faulty")
@@ -118,8 +114,8 @@ def test_a_blocking_controller_overruns_and_services_still_answer(
 
 
 def test_a_switch_to_a_controller_that_starts_slowly_is_answered_with_what_came_of_it(
-    control: Any, set_parameter: Any
-) -> None:
+    control, set_parameter
+):
     assert control.load("bystander")
     assert set_parameter("/bystander", "fault", "start slowly").successful
     assert control.configure("bystander")
@@ -137,8 +133,8 @@ def test_a_switch_to_a_controller_that_starts_slowly_is_answered_with_what_came_
     ],
 )
 def test_failing_hardware_stops_its_controllers_and_comes_back(
-    control: Any, client: Any, manager: Any, order: str, hardware: str, line: str
-) -> None:
+    control, client, manager, order, hardware, line
+):
     control.start("bystander")
     seen = activity(client)
     manager.tell(order)
@@ -161,8 +157,8 @@ def test_failing_hardware_stops_its_controllers_and_comes_back(
 
 
 def test_without_handling_of_exceptions_the_process_ends_with_a_sentence(
-    run_manager: Any, faulty_package: None
-) -> None:
+    run_manager, faulty_package
+):
     program = run_manager(
         "--start",
         "faulty",

@@ -39,15 +39,8 @@ def end_points(client: Any, topic: str, kind: str) -> list[Any]:
     ids=lambda value: value if value.startswith("/") else "",
 )
 def test_end_points_are_those_of_a_real_one(
-    control: Any,
-    client: Any,
-    topic: str,
-    kind: str,
-    node: str,
-    type_: str,
-    reliability: str,
-    durability: str,
-) -> None:
+    control, client, topic, kind, node, type_, reliability, durability
+):
     control.start("joint_state_broadcaster", "position_controller")
     # The name of its node arrives later than the end point.
     client.wait_until(
@@ -60,21 +53,21 @@ def test_end_points_are_those_of_a_real_one(
     assert end_point.qos_profile.durability.name == durability
 
 
-def test_there_is_a_node_for_each_controller_and_component(control: Any, client: Any) -> None:
+def test_there_is_a_node_for_each_controller_and_component(control, client):
     control.start("joint_state_broadcaster")
     expected = {"controller_manager", "joint_state_broadcaster", "hardwareinterface"}
     client.wait_until(lambda: expected <= set(client.node.get_node_names()), f"nodes {expected}")
     assert [client.node.get_node_names().count(name) for name in expected] == [1, 1, 1]
 
 
-def test_controllers_have_no_life_cycle_services(control: Any, client: Any) -> None:
+def test_controllers_have_no_life_cycle_services(control, client):
     control.start("joint_state_broadcaster")
     client.wait_until(lambda: "joint_state_broadcaster" in client.node.get_node_names(), "the node")
     services = client.node.get_service_names_and_types_by_node("joint_state_broadcaster", "/")
     assert not [name for name, types in services if "lifecycle_msgs" in types[0]]
 
 
-def test_unload_takes_the_node_away(control: Any, client: Any) -> None:
+def test_unload_takes_the_node_away(control, client):
     control.load("position_controller")
     client.wait_until(lambda: "position_controller" in client.node.get_node_names(), "the node")
     control.unload("position_controller")
@@ -85,14 +78,14 @@ def test_unload_takes_the_node_away(control: Any, client: Any) -> None:
 
 
 @pytest.fixture
-def latched() -> Any:
+def latched():
     """Return the profile of a subscriber that wants the last message, too."""
     from rclpy.qos import DurabilityPolicy, QoSProfile
 
     return QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-def test_a_late_listener_learns_the_activity(control: Any, client: Any, latched: Any) -> None:
+def test_a_late_listener_learns_the_activity(control, client, latched):
     from controller_manager_msgs.msg import ControllerManagerActivity
 
     control.start("position_controller")
@@ -112,7 +105,7 @@ def test_a_late_listener_learns_the_activity(control: Any, client: Any, latched:
     wait_for("inactive")
 
 
-def test_transitions_are_published(control: Any, client: Any) -> None:
+def test_transitions_are_published(control, client):
     from lifecycle_msgs.msg import TransitionEvent
 
     control.load("position_controller")
@@ -135,7 +128,7 @@ def test_transitions_are_published(control: Any, client: Any) -> None:
 # Joint states
 
 
-def test_joint_states_are_complete_and_in_order(control: Any, client: Any) -> None:
+def test_joint_states_are_complete_and_in_order(control, client):
     from control_msgs.msg import DynamicJointState
     from sensor_msgs.msg import JointState
 
@@ -153,7 +146,7 @@ def test_joint_states_are_complete_and_in_order(control: Any, client: Any) -> No
     ] * 4
 
 
-def test_stamps_are_one_period_apart(control: Any, client: Any) -> None:
+def test_stamps_are_one_period_apart(control, client):
     from sensor_msgs.msg import JointState
 
     control.start("joint_state_broadcaster")
@@ -163,9 +156,7 @@ def test_stamps_are_one_period_apart(control: Any, client: Any) -> None:
     assert all(step > 0 and step % 10_000_000 == 0 for step in steps)
 
 
-def test_a_late_subscriber_gets_the_last_state_while_paused(
-    control: Any, client: Any, manager: Any, latched: Any
-) -> None:
+def test_a_late_subscriber_gets_the_last_state_while_paused(control, client, manager, latched):
     from sensor_msgs.msg import JointState
 
     control.start("joint_state_broadcaster")
@@ -178,7 +169,7 @@ def test_a_late_subscriber_gets_the_last_state_while_paused(
         manager.tell("resume")
 
 
-def test_topics_can_be_local(control: Any, client: Any, run_manager: Any) -> None:
+def test_topics_can_be_local(control, client, run_manager):
     from sensor_msgs.msg import JointState
 
     parameters = {

@@ -8,7 +8,7 @@ JOINTS = ("j0", "j1", "j2", "j3")
 
 
 @pytest.fixture
-def latched() -> Any:
+def latched():
     """Return the profile of a subscriber that wants the last message, too."""
     from rclpy.qos import DurabilityPolicy, QoSProfile
 
@@ -16,7 +16,7 @@ def latched() -> Any:
 
 
 @pytest.mark.parametrize("prefix", ["introspection_data", "statistics"])
-def test_end_points_are_those_of_a_real_one(manager: Any, client: Any, prefix: str) -> None:
+def test_end_points_are_those_of_a_real_one(manager, client, prefix):
     found = {}
     for name in ("full", "names", "values"):
         topic = f"/controller_manager/{prefix}/{name}"
@@ -32,9 +32,7 @@ def test_end_points_are_those_of_a_real_one(manager: Any, client: Any, prefix: s
     }
 
 
-def test_the_values_of_all_interfaces_go_by_their_names(
-    control: Any, client: Any, latched: Any
-) -> None:
+def test_the_values_of_all_interfaces_go_by_their_names(control, client, latched):
     from pal_statistics_msgs.msg import Statistics, StatisticsNames, StatisticsValues
     from std_msgs.msg import Float64MultiArray
 
@@ -63,7 +61,7 @@ def test_the_values_of_all_interfaces_go_by_their_names(
     assert {f"state_interface.{joint}/position" for joint in JOINTS} <= set(listed.names)
 
 
-def test_statistics_follow_what_is_loaded(control: Any, client: Any, latched: Any) -> None:
+def test_statistics_follow_what_is_loaded(control, client, latched):
     from pal_statistics_msgs.msg import StatisticsNames
 
     topic = "/controller_manager/statistics"
@@ -80,7 +78,7 @@ def test_statistics_follow_what_is_loaded(control: Any, client: Any, latched: An
     assert after.names_version > before.names_version
 
 
-def test_each_message_is_later_than_the_previous_one(control: Any, client: Any) -> None:
+def test_each_message_is_later_than_the_previous_one(control, client):
     from pal_statistics_msgs.msg import StatisticsValues
 
     values = client.subscribe(StatisticsValues, "/controller_manager/introspection_data/values")

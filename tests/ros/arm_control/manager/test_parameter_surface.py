@@ -19,7 +19,7 @@ def name_of(type_name: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def manager(run_manager: Any) -> Any:
+def manager(run_manager):
     """Return a manager that knows a controller of each type."""
     parameters: dict[str, Any] = {
         "controller_manager": {
@@ -32,7 +32,7 @@ def manager(run_manager: Any) -> Any:
 
 
 @pytest.fixture
-def describe(client: Any) -> Any:
+def describe(client):
     """Return a function that returns the descriptors of all parameters of a node by name."""
     from rcl_interfaces.srv import DescribeParameters, ListParameters
 
@@ -49,7 +49,7 @@ def describe(client: Any) -> Any:
 
 
 @pytest.mark.parametrize("type_name", SURFACE)
-def test_names_types_and_what_is_read_only(control: Any, describe: Any, type_name: str) -> None:
+def test_names_types_and_what_is_read_only(control, describe, type_name):
     assert control.load(name_of(type_name))
     record = SURFACE[type_name]
     found = {
@@ -61,7 +61,7 @@ def test_names_types_and_what_is_read_only(control: Any, describe: Any, type_nam
     assert found == expected
 
 
-def test_bounds_are_ranges(control: Any, describe: Any) -> None:
+def test_bounds_are_ranges(control, describe):
     trajectory = name_of("joint_trajectory_controller/JointTrajectoryController")
     assert control.load(trajectory)
     found = describe(f"/{trajectory}", "constraints.goal_time", "interpolation_method")
@@ -77,14 +77,12 @@ def test_bounds_are_ranges(control: Any, describe: Any) -> None:
     assert (bounds.from_value, bounds.to_value) == (1, 2**63 - 1)
 
 
-def test_the_type_of_a_controller_is_described_as_a_string(manager: Any, describe: Any) -> None:
+def test_the_type_of_a_controller_is_described_as_a_string(manager, describe):
     name = f"{name_of('pid_controller/PidController')}.type"
     assert TYPES[describe("/controller_manager", name)[name].type] == "string"
 
 
-def test_a_frame_changes_with_the_next_configuration(
-    control: Any, set_parameter: Any, get_parameter: Any
-) -> None:
+def test_a_frame_changes_with_the_next_configuration(control, set_parameter, get_parameter):
     drive = name_of("diff_drive_controller/DiffDriveController")
     assert control.load(drive)
     # The names of the wheels come one after the other, and no robot can drive in between.
@@ -113,9 +111,7 @@ def test_a_frame_changes_with_the_next_configuration(
     assert list(claimed) == ["j0/velocity", "j3/velocity"]
 
 
-def test_a_value_out_of_bounds_is_refused_with_what_it_must_be(
-    control: Any, set_parameter: Any
-) -> None:
+def test_a_value_out_of_bounds_is_refused_with_what_it_must_be(control, set_parameter):
     drive = name_of("diff_drive_controller/DiffDriveController")
     assert control.load(drive)
     result = set_parameter(f"/{drive}", "wheel_radius", -1.0)

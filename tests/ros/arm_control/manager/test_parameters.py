@@ -11,7 +11,7 @@ JOINTS = ("j0", "j1", "j2", "j3")
 
 
 @pytest.fixture
-def parameters_of(client: Any) -> Callable[[str], dict[str, Any]]:
+def parameters_of(client) -> Callable[[str], dict[str, Any]]:
     """Return a function that reads all parameters of a node."""
     from rcl_interfaces.srv import GetParameters, ListParameters
     from rclpy.parameter import parameter_value_to_python
@@ -63,7 +63,7 @@ def threshold_parameters() -> dict[str, float]:
     }
 
 
-def test_the_managers_parameters(control: Any, parameters_of: Any, client: Any) -> None:
+def test_the_managers_parameters(control, parameters_of, client):
     from rcl_interfaces.srv import DescribeParameters
 
     control.load("position_controller")
@@ -91,7 +91,7 @@ def test_the_managers_parameters(control: Any, parameters_of: Any, client: Any) 
     assert all(d.description for d in descriptions)
 
 
-def test_a_controllers_parameters(control: Any, parameters_of: Any) -> None:
+def test_a_controllers_parameters(control, parameters_of):
     control.load("position_controller")
     parameters = parameters_of("/position_controller")
     expected = {
@@ -104,9 +104,7 @@ def test_a_controllers_parameters(control: Any, parameters_of: Any) -> None:
     assert {name: parameters[name] for name in expected} == expected
 
 
-def test_a_controller_with_is_async_gets_a_warning(
-    control: Any, manager: Any, set_parameter: Any
-) -> None:
+def test_a_controller_with_is_async_gets_a_warning(control, manager, set_parameter):
     control.load("position_controller")
     assert set_parameter("/position_controller", "is_async", True).successful
     assert control.configure("position_controller")
@@ -114,9 +112,7 @@ def test_a_controller_with_is_async_gets_a_warning(
     assert [c.is_async for c in control.list()] == [False]
 
 
-def test_the_broadcasters_parameters_are_read_only(
-    control: Any, parameters_of: Any, set_parameter: Any
-) -> None:
+def test_the_broadcasters_parameters_are_read_only(control, parameters_of, set_parameter):
     control.load("joint_state_broadcaster")
     parameters = parameters_of("/joint_state_broadcaster")
     expected = {
@@ -138,7 +134,7 @@ def test_the_broadcasters_parameters_are_read_only(
         assert "read-only" in result.reason
 
 
-def test_parameters_that_mean_nothing_are_reported(run_manager: Any) -> None:
+def test_parameters_that_mean_nothing_are_reported(run_manager):
     program = run_manager(
         "--start",
         "position_controller",
@@ -176,7 +172,7 @@ def test_parameters_that_mean_nothing_are_reported(run_manager: Any) -> None:
     assert program.output.count(own) == 2
 
 
-def test_an_integer_serves_and_an_empty_list_does_no_harm(run_manager: Any) -> None:
+def test_an_integer_serves_and_an_empty_list_does_no_harm(run_manager):
     manager = run_manager(
         "--start",
         "jsb",
@@ -215,8 +211,8 @@ def test_an_integer_serves_and_an_empty_list_does_no_harm(run_manager: Any) -> N
     ],
 )
 def test_parameters_of_the_manager_that_make_no_sense_end_it_with_a_sentence(
-    run_manager: Any, parameters: dict[str, Any], reason: str
-) -> None:
+    run_manager, parameters, reason
+):
     program = run_manager(
         parameters={"/**/controller_manager": {"ros__parameters": parameters}},
         ros_arguments=("-r", "__ns:=/refused"),
@@ -227,7 +223,7 @@ def test_parameters_of_the_manager_that_make_no_sense_end_it_with_a_sentence(
     assert "Traceback" not in program.output
 
 
-def test_a_controller_that_cannot_be_started_ends_it_with_a_sentence(run_manager: Any) -> None:
+def test_a_controller_that_cannot_be_started_ends_it_with_a_sentence(run_manager):
     program = run_manager(
         "--start",
         "position_controller",
@@ -244,6 +240,6 @@ def test_a_controller_that_cannot_be_started_ends_it_with_a_sentence(run_manager
     assert "Traceback" not in program.output
 
 
-def test_a_controller_with_a_name_of_300_characters_is_refused(control: Any) -> None:
+def test_a_controller_with_a_name_of_300_characters_is_refused(control):
     assert not control.load("a" * 300)
     assert control.states() == {}

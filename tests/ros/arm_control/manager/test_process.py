@@ -1,14 +1,13 @@
 """A manager's process: namespaces, failures, the end."""
 
 from itertools import pairwise
-from typing import Any
 
 import pytest
 
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
 
 
-def test_all_of_it_can_live_in_a_namespace(run_manager: Any, control_of: Any, client: Any) -> None:
+def test_all_of_it_can_live_in_a_namespace(run_manager, control_of, client):
     from sensor_msgs.msg import JointState
 
     program = run_manager(
@@ -29,7 +28,7 @@ def test_all_of_it_can_live_in_a_namespace(run_manager: Any, control_of: Any, cl
 
 
 @pytest.mark.parametrize("paused", [(), ("--paused",)])
-def test_it_ends_with_code_0(run_manager: Any, paused: tuple[str, ...]) -> None:
+def test_it_ends_with_code_0(run_manager, paused):
     program = run_manager(
         *paused,
         "--start",
@@ -41,9 +40,7 @@ def test_it_ends_with_code_0(run_manager: Any, paused: tuple[str, ...]) -> None:
     assert "Traceback" not in program.output
 
 
-def test_commands_are_kept_within_the_limits_of_the_description(
-    run_manager: Any, control_of: Any, client: Any
-) -> None:
+def test_commands_are_kept_within_the_limits_of_the_description(run_manager, control_of, client):
     from sensor_msgs.msg import JointState
     from std_msgs.msg import Float64MultiArray
 

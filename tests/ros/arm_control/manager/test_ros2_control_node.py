@@ -79,13 +79,13 @@ def start(
 
 
 @pytest.fixture(scope="module")
-def manager(run: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
+def manager(run, tmp_path_factory):
     """Return the module's manager, its robot given by parameter."""
     return start(run, tmp_path_factory.mktemp("parameters"), PARAMETERS)
 
 
 @pytest.fixture
-def component(control: Any) -> Callable[[str], Any]:
+def component(control) -> Callable[[str], Any]:
     """Return a function that looks a component up."""
 
     def look_up(name: str) -> Any:
@@ -96,7 +96,7 @@ def component(control: Any) -> Callable[[str], Any]:
 
 
 @pytest.fixture
-def set_state(control: Any) -> Callable[..., Any]:
+def set_state(control) -> Callable[..., Any]:
     """Return a function that sets a component's state."""
     from lifecycle_msgs.msg import State
 
@@ -110,7 +110,7 @@ def set_state(control: Any) -> Callable[..., Any]:
 
 
 @pytest.fixture(scope="module")
-def waiting(run: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
+def waiting(run, tmp_path_factory):
     """Return a manager in a namespace that uses /clock and waits for its description."""
     parameters = {"/waiting/controller_manager": {"ros__parameters": {"jsb.type": BROADCASTER}}}
     return start(
@@ -122,7 +122,7 @@ def waiting(run: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 @pytest.fixture
-def describe(client: Any, latched: Any) -> Callable[[str], None]:
+def describe(client, latched) -> Callable[[str], None]:
     """Return a function that publishes a description for the waiting manager."""
     from std_msgs.msg import String
 
@@ -131,8 +131,8 @@ def describe(client: Any, latched: Any) -> Callable[[str], None]:
 
 
 def test_a_robot_is_waited_for_until_a_description_can_be_used(
-    waiting: Any, client: Any, describe: Any, control_of: Any
-) -> None:
+    waiting, client, describe, control_of
+):
     def services() -> set[str]:
         return {
             name.rpartition("/")[2]
@@ -167,9 +167,7 @@ def test_a_robot_is_waited_for_until_a_description_can_be_used(
     assert (component.name, component.state.label) == ("Arm", "active")
 
 
-def test_with_use_sim_time_it_uses_the_clock_topic(
-    waiting: Any, client: Any, describe: Any, control_of: Any
-) -> None:
+def test_with_use_sim_time_it_uses_the_clock_topic(waiting, client, describe, control_of):
     from rosgraph_msgs.msg import Clock
     from sensor_msgs.msg import JointState
 
@@ -218,12 +216,12 @@ def test_with_use_sim_time_it_uses_the_clock_topic(
     assert "Traceback" not in waiting.output
 
 
-def test_a_description_by_parameter_is_deprecated(manager: Any, control: Any) -> None:
+def test_a_description_by_parameter_is_deprecated(manager, control):
     manager.wait_for_line("[Deprecated] Passing the robot description parameter directly")
     assert control.states() == {}
 
 
-def test_its_loop_runs_at_the_requested_priority(manager: Any, client: Any) -> None:
+def test_its_loop_runs_at_the_requested_priority(manager, client):
     threads = Path(f"/proc/{manager.process.pid}/task")
 
     def raised() -> bool:
@@ -247,7 +245,7 @@ def test_its_loop_runs_at_the_requested_priority(manager: Any, client: Any) -> N
 # Hardware
 
 
-def test_components_start_in_their_initial_states(component: Any) -> None:
+def test_components_start_in_their_initial_states(component):
     assert [
         (c.name, c.type, c.state.label, c.plugin_name, c.rw_rate, c.is_async)
         for c in map(component, ("Arm", "Lift", "Scale"))
@@ -260,7 +258,7 @@ def test_components_start_in_their_initial_states(component: Any) -> None:
     assert [i.is_available for i in component("Lift").state_interfaces] == [False, False]
 
 
-def test_inactive_hardware_is_watched_but_not_commanded(control: Any, set_state: Any) -> None:
+def test_inactive_hardware_is_watched_but_not_commanded(control, set_state):
     set_state("Lift", label="inactive")
     try:
         control.start("jsb")
@@ -276,7 +274,7 @@ def test_inactive_hardware_is_watched_but_not_commanded(control: Any, set_state:
 # Controllers
 
 
-def test_cleanup_controller(control: Any) -> None:
+def test_cleanup_controller(control):
     def clean_up(name: str) -> bool:
         return control.call("cleanup_controller", name=name).ok
 
@@ -292,7 +290,7 @@ def test_cleanup_controller(control: Any) -> None:
     assert control.states() == {"arm": "active"}
 
 
-def test_a_chain_of_controllers(control: Any, client: Any) -> None:
+def test_a_chain_of_controllers(control, client):
     from control_msgs.msg import MultiDOFStateStamped
     from std_msgs.msg import Float64MultiArray
 
@@ -332,7 +330,7 @@ def test_a_chain_of_controllers(control: Any, client: Any) -> None:
     assert control.switch([], ["top", "pid"]).ok
 
 
-def test_references_come_by_topic_unless_a_controller_commands(control: Any, client: Any) -> None:
+def test_references_come_by_topic_unless_a_controller_commands(control, client):
     from control_msgs.msg import MultiDOFCommand, MultiDOFStateStamped
     from std_srvs.srv import SetBool
 
@@ -348,7 +346,7 @@ def test_references_come_by_topic_unless_a_controller_commands(control: Any, cli
     assert client.call(SetBool, "/pid/set_feedforward_control", request).success
 
 
-def test_ctrl_c_ends_it_with_code_0(manager: Any, control_of: Any, client: Any) -> None:
+def test_ctrl_c_ends_it_with_code_0(manager, control_of, client):
     control_of("").start("jsb", "arm")
     assert manager.stop(2) == 0
     assert "Traceback" not in manager.output

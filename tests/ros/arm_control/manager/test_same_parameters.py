@@ -1,6 +1,5 @@
 """A parameter file means the same with and without ROS."""
 
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -39,7 +38,7 @@ ctrl: {ros__parameters: {y: 2}}
 
 
 @pytest.fixture(scope="module")
-def context() -> Any:
+def context():
     made = Context()
     rclpy.init(context=made, signal_handler_options=SignalHandlerOptions.NO)
     yield made
@@ -57,9 +56,7 @@ def context() -> Any:
         (ANYWHERE, "ctrl", "/left"),
     ],
 )
-def test_a_node_and_a_program_get_the_same_values(
-    context: Any, tmp_path: Path, text: str, node: str, namespace: str
-):
+def test_a_node_and_a_program_get_the_same_values(context, tmp_path, text, node, namespace):
     from arm_control.manager.ros.parameter_node import ParameterNode
 
     path = tmp_path / "controllers.yaml"

@@ -13,9 +13,7 @@ COMMANDS = [f"{joint}/position" for joint in JOINTS]
 STRICT = 2
 
 
-def test_the_services_of_a_real_one_are_there(
-    control: Any, client: Any, services: dict[str, str]
-) -> None:
+def test_the_services_of_a_real_one_are_there(control, client, services):
     control.list()
     expected = {
         f"/controller_manager/{name}": [f"controller_manager_msgs/srv/{type_}"]
@@ -33,7 +31,7 @@ def test_the_services_of_a_real_one_are_there(
     assert {name: offered[name] for name in expected} == expected
 
 
-def test_controller_types_are_listed_with_their_base_class(control: Any) -> None:
+def test_controller_types_are_listed_with_their_base_class(control):
     answer = control.call("list_controller_types")
     base_classes = dict(zip(answer.types, answer.base_classes, strict=True))
     assert base_classes[POSITION] == base_classes[BROADCASTER] == f"{INTERFACES}ControllerInterface"
@@ -42,7 +40,7 @@ def test_controller_types_are_listed_with_their_base_class(control: Any) -> None
     )
 
 
-def test_a_controller_from_load_to_unload(control: Any) -> None:
+def test_a_controller_from_load_to_unload(control):
     assert control.load("position_controller")
     assert control.states() == {"position_controller": "unconfigured"}
     assert control.configure("position_controller")
@@ -56,7 +54,7 @@ def test_a_controller_from_load_to_unload(control: Any) -> None:
     assert control.states() == {}
 
 
-def test_an_unloaded_controller_leaves_nothing_behind(control: Any, manager: Any) -> None:
+def test_an_unloaded_controller_leaves_nothing_behind(control, manager):
     for _ in range(3):
         control.start("joint_state_broadcaster")
         control.unload_all()
@@ -64,7 +62,7 @@ def test_an_unloaded_controller_leaves_nothing_behind(control: Any, manager: Any
     assert "already registered" not in manager.output
 
 
-def test_list_controllers_says_what_is_claimed_and_required(control: Any) -> None:
+def test_list_controllers_says_what_is_claimed_and_required(control):
     control.start("joint_state_broadcaster", "position_controller")
     position, broadcaster = control.list()
     assert (position.name, position.type, position.state) == (
@@ -84,7 +82,7 @@ def test_list_controllers_says_what_is_claimed_and_required(control: Any) -> Non
     }
 
 
-def test_what_cannot_be_loaded_leaves_its_reason_in_the_log(control: Any, manager: Any) -> None:
+def test_what_cannot_be_loaded_leaves_its_reason_in_the_log(control, manager):
     assert not control.load("nothere")
     manager.wait_for_line("The 'type' param was not defined for 'nothere'. It is defined for ")
 
@@ -96,16 +94,14 @@ def test_what_cannot_be_loaded_leaves_its_reason_in_the_log(control: Any, manage
         ("controller_manager", "a controller cannot have the controller manager's name 'c"),
     ],
 )
-def test_a_name_that_its_node_cannot_have_is_refused(
-    control: Any, manager: Any, set_parameter: Any, name: str, reason: str
-) -> None:
+def test_a_name_that_its_node_cannot_have_is_refused(control, manager, set_parameter, name, reason):
     assert set_parameter("/controller_manager", f"{name}.type", POSITION).successful
     assert not control.load(name)
     manager.wait_for_line(reason)
     assert "Traceback" not in manager.output
 
 
-def test_a_switch_is_done_as_soon_as_possible_or_not(control: Any) -> None:
+def test_a_switch_is_done_as_soon_as_possible_or_not(control):
     control.load("position_controller")
     control.configure("position_controller")
     for activate_asap in (True, False):
@@ -120,13 +116,11 @@ def test_a_switch_is_done_as_soon_as_possible_or_not(control: Any) -> None:
 
 
 @pytest.mark.parametrize("action", ["configure", "unload"])
-def test_an_unknown_name_is_refused(control: Any, action: str) -> None:
+def test_an_unknown_name_is_refused(control, action):
     assert not getattr(control, action)("nothere")
 
 
-def test_an_inactive_controller_reads_its_parameters_again(
-    control: Any, set_parameter: Any
-) -> None:
+def test_an_inactive_controller_reads_its_parameters_again(control, set_parameter):
     control.load("position_controller")
     control.configure("position_controller")
     set_parameter("/position_controller", "joints", ["j1"])
@@ -135,9 +129,7 @@ def test_an_inactive_controller_reads_its_parameters_again(
     assert controller.required_command_interfaces == ["j1/position"]
 
 
-def test_parameters_that_make_no_sense_fail_the_configuration(
-    control: Any, manager: Any, set_parameter: Any
-) -> None:
+def test_parameters_that_make_no_sense_fail_the_configuration(control, manager, set_parameter):
     control.load("position_controller")
     set_parameter("/position_controller", "joints", [])
     assert not control.configure("position_controller")
@@ -145,13 +137,13 @@ def test_parameters_that_make_no_sense_fail_the_configuration(
     assert control.states() == {"position_controller": "unconfigured"}
 
 
-def test_the_type_may_be_set_while_it_runs(control: Any, set_parameter: Any) -> None:
+def test_the_type_may_be_set_while_it_runs(control, set_parameter):
     set_parameter("/controller_manager", "late.type", BROADCASTER)
     assert control.load("late")
     assert control.states() == {"late": "unconfigured"}
 
 
-def test_an_unknown_name_is_left_out_by_default(control: Any) -> None:
+def test_an_unknown_name_is_left_out_by_default(control):
     answer = control.switch(["nothere"], [], strictness=0)
     assert not answer.ok
     assert answer.message == (
@@ -160,12 +152,12 @@ def test_an_unknown_name_is_left_out_by_default(control: Any) -> None:
     )
 
 
-def test_an_unknown_strictness_is_refused(control: Any) -> None:
+def test_an_unknown_strictness_is_refused(control):
     answer = control.switch([], [], 9)
     assert (answer.ok, answer.message) == (False, "unknown strictness 9; it is 1, 2, 3 or 4")
 
 
-def test_hardware_interfaces(control: Any) -> None:
+def test_hardware_interfaces(control):
     control.start("second_controller")
     answer = control.call("list_hardware_interfaces")
     claimed = {i.name: i.is_claimed for i in answer.command_interfaces}
@@ -177,7 +169,7 @@ def test_hardware_interfaces(control: Any) -> None:
     assert all(i.is_available and i.data_type == "double" for i in interfaces)
 
 
-def test_hardware_components(control: Any) -> None:
+def test_hardware_components(control):
     (component,) = control.call("list_hardware_components").component
     assert (component.name, component.type, component.rw_rate) == (
         "HardwareInterface",
@@ -189,7 +181,7 @@ def test_hardware_components(control: Any) -> None:
     assert len(component.command_interfaces) == 8
 
 
-def test_hardware_can_be_deactivated_and_activated_by_id_or_label(control: Any) -> None:
+def test_hardware_can_be_deactivated_and_activated_by_id_or_label(control):
     from lifecycle_msgs.msg import State
 
     def set_state(name: str, **state: Any) -> Any:
@@ -205,7 +197,7 @@ def test_hardware_can_be_deactivated_and_activated_by_id_or_label(control: Any) 
     assert not set_state("HardwareInterface", label="asleep").ok
 
 
-def test_everything_works_while_paused(control: Any, manager: Any) -> None:
+def test_everything_works_while_paused(control, manager):
     manager.tell("pause")
     try:
         control.start("joint_state_broadcaster", "position_controller")
@@ -216,9 +208,7 @@ def test_everything_works_while_paused(control: Any, manager: Any) -> None:
         manager.tell("resume")
 
 
-def test_a_loop_that_is_stuck_lets_a_switch_time_out_and_lists_are_answered(
-    control: Any, manager: Any
-) -> None:
+def test_a_loop_that_is_stuck_lets_a_switch_time_out_and_lists_are_answered(control, manager):
     from builtin_interfaces.msg import Duration
 
     control.load("position_controller")
@@ -241,9 +231,7 @@ def test_a_loop_that_is_stuck_lets_a_switch_time_out_and_lists_are_answered(
     assert control.states() == {"position_controller": "inactive"}
 
 
-def test_lists_are_answered_while_a_change_waits_for_a_loop_that_is_stuck(
-    control: Any, manager: Any
-) -> None:
+def test_lists_are_answered_while_a_change_waits_for_a_loop_that_is_stuck(control, manager):
     control.load("position_controller")
     manager.tell("block")
     try:
@@ -259,7 +247,7 @@ def test_lists_are_answered_while_a_change_waits_for_a_loop_that_is_stuck(
     control.wait_for_states(position_controller="inactive")
 
 
-def test_reload_unloads_everything_active_controllers_only_by_force(control: Any) -> None:
+def test_reload_unloads_everything_active_controllers_only_by_force(control):
     def reload(force: bool) -> bool:
         return control.call("reload_controller_libraries", force_kill=force).ok
 

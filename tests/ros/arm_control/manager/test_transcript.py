@@ -3,8 +3,6 @@
 Read off a C++ ros2_control_node by its command-line client; each row is one call and its answer.
 """
 
-from typing import Any
-
 import pytest
 
 JTC = "joint_trajectory_controller"
@@ -25,7 +23,7 @@ BACK = f"{SWITCHED}\nDeactivated controllers: [ {JTC} ]\nActivated controllers: 
 
 
 @pytest.fixture(scope="module")
-def manager(run_manager: Any) -> Any:
+def manager(run_manager):
     """Return a manager that knows the trajectory controller, too."""
     types = {
         "joint_state_broadcaster": "joint_state_broadcaster/JointStateBroadcaster",
@@ -44,7 +42,7 @@ def manager(run_manager: Any) -> Any:
     )
 
 
-def test_the_session_goes_as_with_a_real_one(control: Any) -> None:
+def test_the_session_goes_as_with_a_real_one(control):
     control.start("joint_state_broadcaster", POSITION)
     assert control.load(JTC)
     assert control.configure(JTC)

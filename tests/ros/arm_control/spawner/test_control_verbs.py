@@ -1,8 +1,6 @@
 """`arm control` says what ros2 control says, on both ways: done, and refused."""
 
 from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -12,7 +10,7 @@ POSITION = "position_controller"
 
 
 @pytest.fixture
-def arm_control(control: Any, capfd: Any) -> Callable[..., str]:
+def arm_control(control, capfd) -> Callable[..., str]:
     """Return a function that carries out one verb and returns what it prints."""
     control.start("joint_state_broadcaster")
 
@@ -27,7 +25,7 @@ def arm_control(control: Any, capfd: Any) -> Callable[..., str]:
     return run
 
 
-def test_load_says_each_step_and_skips_what_is_loaded(arm_control: Any, control: Any) -> None:
+def test_load_says_each_step_and_skips_what_is_loaded(arm_control, control):
     assert arm_control("load_controller", POSITION, "--set-state", "inactive") == (
         f"Successfully loaded controller {POSITION}\n"
         f"Successfully loaded controller {POSITION} into state inactive\n"
@@ -47,7 +45,7 @@ def test_load_says_each_step_and_skips_what_is_loaded(arm_control: Any, control:
     assert control.states()[POSITION] == "active"
 
 
-def test_load_takes_a_parameter_file(arm_control: Any, control: Any, tmp_path: Path) -> None:
+def test_load_takes_a_parameter_file(arm_control, control, tmp_path):
     file = tmp_path / "own.yaml"
     file.write_text(
         "own_controller: {ros__parameters: "
@@ -69,9 +67,7 @@ def test_load_takes_a_parameter_file(arm_control: Any, control: Any, tmp_path: P
         ("own_controller: {ros__parameters: {type: 5}}", "the type of controller 'own_controller'"),
     ],
 )
-def test_an_unusable_parameter_file_is_refused(
-    arm_control: Any, tmp_path: Path, content: str | None, sentence: str
-) -> None:
+def test_an_unusable_parameter_file_is_refused(arm_control, tmp_path, content, sentence):
     file = tmp_path / "own.yaml"
     if content is not None:
         file.write_text(content)
@@ -109,9 +105,7 @@ def test_an_unusable_parameter_file_is_refused(
         ),
     ],
 )
-def test_a_misspelt_controller_gets_a_suggestion(
-    arm_control: Any, words: tuple[str, ...], sentence: str, meant: str
-) -> None:
+def test_a_misspelt_controller_gets_a_suggestion(arm_control, words, sentence, meant):
     said = arm_control(*words, code=1)
     assert said.startswith(sentence)
     assert f" did you mean '{meant}'" in said
@@ -121,9 +115,7 @@ def test_a_misspelt_controller_gets_a_suggestion(
     ("state", "step"),
     [("unconfigured", "cleaning up"), ("inactive", "stopping"), ("active", "activating")],
 )
-def test_a_refused_hardware_state_is_reported_like_ros2_control(
-    arm_control: Any, state: str, step: str
-) -> None:
+def test_a_refused_hardware_state_is_reported_like_ros2_control(arm_control, state, step):
     assert arm_control("set_hardware_component_state", "nothere", state, code=1) == (
         f"Error {step} hardware component, check controller_manager logs\n"
     )

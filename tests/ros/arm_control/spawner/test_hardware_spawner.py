@@ -9,7 +9,7 @@ from std_msgs.msg import String
 
 
 @pytest.fixture
-def spawn_hardware(run: Any) -> Callable[..., Any]:
+def spawn_hardware(run) -> Callable[..., Any]:
     """Return a function that starts a hardware spawner."""
     return lambda *arguments: run("-m", "arm_control.spawner.hardware_spawner_node", *arguments)
 
@@ -19,7 +19,7 @@ def state(control: Any) -> str:
     return component.state.label
 
 
-def test_it_configures_and_activates(control: Any, spawn_hardware: Any) -> None:
+def test_it_configures_and_activates(control, spawn_hardware):
     output = spawn_hardware("HardwareInterface", "nothere", "--configure").succeed()
     assert "component 'HardwareInterface'" in output
     assert "Hardware now in state: lifecycle_msgs.msg.State(id=2, label='inactive')." in output
@@ -30,7 +30,7 @@ def test_it_configures_and_activates(control: Any, spawn_hardware: Any) -> None:
     assert state(control) == "active"
 
 
-def test_a_signal_ends_the_wait(spawn_hardware: Any) -> None:
+def test_a_signal_ends_the_wait(spawn_hardware):
     spawner = spawn_hardware("a", "--activate", "--ros-args", "-r", "__ns:=/far")
     spawner.wait_for_line("waiting for service /far/controller_manager/list_hardware_components")
     assert spawner.stop(signal.SIGTERM) == 0
@@ -48,8 +48,8 @@ ROBOT = (
 
 
 def test_spawners_wait_for_the_robot_description(
-    run: Any, spawn: Any, spawn_hardware: Any, client: Any, control_of: Any, latched: Any
-) -> None:
+    run, spawn, spawn_hardware, client, control_of, latched
+):
     namespace = ("--ros-args", "-r", "__ns:=/bare")
     type_name = "joint_state_broadcaster/JointStateBroadcaster"
     waiting = run(

@@ -14,7 +14,7 @@ from controller_manager_msgs.srv import ConfigureController, ListControllers
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
 
 
-def test_it_loads_configures_and_activates_in_order(control: Any, spawn: Any) -> None:
+def test_it_loads_configures_and_activates_in_order(control, spawn):
     spawner = spawn("joint_state_broadcaster", "position_controller")
     spawner.succeed()
     assert control.states() == {
@@ -35,14 +35,12 @@ def test_it_loads_configures_and_activates_in_order(control: Any, spawn: Any) ->
 @pytest.mark.parametrize(
     ("flag", "state"), [("--load-only", "unconfigured"), ("--inactive", "inactive")]
 )
-def test_it_stops_at_the_requested_state(control: Any, spawn: Any, flag: str, state: str) -> None:
+def test_it_stops_at_the_requested_state(control, spawn, flag, state):
     spawn("position_controller", flag).succeed()
     assert control.states() == {"position_controller": state}
 
 
-def test_what_is_loaded_or_configured_can_be_spawned_and_what_is_active_cannot(
-    control: Any, spawn: Any
-) -> None:
+def test_what_is_loaded_or_configured_can_be_spawned_and_what_is_active_cannot(control, spawn):
     control.load("position_controller")
     output = spawn("position_controller", "--no-switch-asap").succeed()
     assert "Controller already loaded, skipping load_controller" in output
@@ -57,23 +55,21 @@ def test_what_is_loaded_or_configured_can_be_spawned_and_what_is_active_cannot(
     assert control.states() == {"position_controller": "active"}
 
 
-def test_a_group_is_activated_in_one_switch(control: Any, spawn: Any, manager: Any) -> None:
+def test_a_group_is_activated_in_one_switch(control, spawn, manager):
     names = ("position_controller", "joint_state_broadcaster")
     output = spawn(*names, "--activate-as-group").succeed()
     assert f"Configured and activated all the parsed controllers list : {list(names)}!" in output
     manager.wait_for_line("Activated controllers: [ position_controller joint_state_broadcaster ]")
 
 
-def test_a_group_is_all_or_nothing(control: Any, spawn: Any) -> None:
+def test_a_group_is_all_or_nothing(control, spawn):
     output = spawn("position_controller", "second_controller", "--activate-as-group").fail()
     assert "will be used by another controller that is being activated" in output
     assert "Failed to activate controller : position_controller second_controller" in output
     assert set(control.states().values()) == {"inactive"}
 
 
-def test_a_failed_activation_exits_with_code_1_and_the_managers_message(
-    control: Any, spawn: Any, unspawn: Any
-) -> None:
+def test_a_failed_activation_exits_with_code_1_and_the_managers_message(control, spawn, unspawn):
     control.start("position_controller")
     output = spawn("second_controller").fail()
     assert "'j3/position' is currently claimed by another controller." in output
@@ -84,19 +80,17 @@ def test_a_failed_activation_exits_with_code_1_and_the_managers_message(
     assert control.states() == {"second_controller": "active"}
 
 
-def test_an_unknown_controller_ends_with_code_1(control: Any, spawn: Any) -> None:
+def test_an_unknown_controller_ends_with_code_1(control, spawn):
     assert "Failed loading controller not-there" in spawn("not-there").fail()
     assert control.states() == {}
 
 
-def test_without_a_manager_it_gives_up_after_its_time(spawn: Any) -> None:
+def test_without_a_manager_it_gives_up_after_its_time(spawn):
     output = spawn("a", "-c", "/nobody", "--controller-manager-timeout", "0.3").fail()
     assert "Could not contact service /nobody/list_controllers within 0.3 s" in output
 
 
-def test_it_waits_for_a_manager_that_comes_later(
-    spawn: Any, run_manager: Any, control_of: Any
-) -> None:
+def test_it_waits_for_a_manager_that_comes_later(spawn, run_manager, control_of):
     spawner = spawn("jsb", "--ros-args", "-r", "__ns:=/late")
     spawner.wait_for_line("waiting for service /late/controller_manager/list_controllers")
     run_manager(
@@ -140,7 +134,7 @@ class SlowManager:
         return answer
 
 
-def test_a_step_without_an_answer_is_looked_up_and_not_done_twice(client: Any, spawn: Any) -> None:
+def test_a_step_without_an_answer_is_looked_up_and_not_done_twice(client, spawn):
     slow = SlowManager(client)
     manager = "/slow/controller_manager"
     spawner = spawn("a", "-c", manager, "--inactive", "--service-call-timeout", "2")
@@ -150,7 +144,7 @@ def test_a_step_without_an_answer_is_looked_up_and_not_done_twice(client: Any, s
     assert (slow.state, slow.configurations) == ("inactive", 1)
 
 
-def test_a_manager_that_loads_nothing_is_given_up(control: Any, manager: Any, spawn: Any) -> None:
+def test_a_manager_that_loads_nothing_is_given_up(control, manager, spawn):
     manager.tell("block")
     spawner = spawn("position_controller", "--service-call-timeout", "1")
     try:
@@ -166,7 +160,7 @@ def test_a_manager_that_loads_nothing_is_given_up(control: Any, manager: Any, sp
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_it_can_stay_and_unload_in_the_end(control: Any, spawn: Any, number: int) -> None:
+def test_it_can_stay_and_unload_in_the_end(control, spawn, number):
     group = ["--activate-as-group"] if number == signal.SIGINT else []
     spawner = spawn("joint_state_broadcaster", "position_controller", "-u", *group)
     spawner.wait_for_line("Waiting until interrupt to unload controllers")
@@ -176,7 +170,7 @@ def test_it_can_stay_and_unload_in_the_end(control: Any, spawn: Any, number: int
     assert control.states() == {}
 
 
-def test_a_signal_ends_the_wait(spawn: Any) -> None:
+def test_a_signal_ends_the_wait(spawn):
     spawner = spawn("a", "-c", "/nobody")
     spawner.wait_for_line("waiting for service /nobody/list_controllers")
     assert spawner.stop(signal.SIGINT) == 0
@@ -187,7 +181,7 @@ def test_a_signal_ends_the_wait(spawn: Any) -> None:
 
 
 @pytest.fixture
-def other_spawner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+def other_spawner(tmp_path_factory) -> Iterator[Any]:
     """Hold the lock as another spawner of this machine; closing the file releases it."""
     path = tmp_path_factory.getbasetemp() / "locks" / "ros2-control-controller-spawner.lock"
     path.parent.mkdir(exist_ok=True)
@@ -196,7 +190,7 @@ def other_spawner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
         yield file
 
 
-def test_it_waits_for_another_spawner(control: Any, spawn: Any, other_spawner: Any) -> None:
+def test_it_waits_for_another_spawner(control, spawn, other_spawner):
     spawner = spawn("position_controller")
     spawner.wait_for_line("waiting for another spawner, which holds")
     assert control.states() == {}

@@ -1,6 +1,5 @@
 """The spawner's parameter files and ROS arguments."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -13,9 +12,7 @@ def node(**parameters: Any) -> dict[str, Any]:
     return {"ros__parameters": parameters}
 
 
-def test_a_file_brings_type_and_parameters(
-    control: Any, spawn: Any, manager: Any, file: Any, get_parameter: Callable[..., Any]
-) -> None:
+def test_a_file_brings_type_and_parameters(control, spawn, manager, file, get_parameter):
     path = file({"fresh": node(type=POSITION, joints=["j2"], fallback_controllers=["a", "b"])})
     spawn("fresh", "--inactive", "-p", path).succeed()
     (controller,) = control.list()
@@ -27,9 +24,7 @@ def test_a_file_brings_type_and_parameters(
     assert "is not known to" not in manager.output
 
 
-def test_a_wildcard_serves_many_controllers_beside_their_own_entries(
-    control: Any, spawn: Any, file: Any
-) -> None:
+def test_a_wildcard_serves_many_controllers_beside_their_own_entries(control, spawn, file):
     names = [f"jsb_{number}" for number in range(12)]
     path = file(
         {"/**": node(type=BROADCASTER, use_local_topics=True)}
@@ -41,7 +36,7 @@ def test_a_wildcard_serves_many_controllers_beside_their_own_entries(
     assert states == {("j1/position",)}
 
 
-def test_every_key_that_names_a_controller_serves(control: Any, spawn: Any, file: Any) -> None:
+def test_every_key_that_names_a_controller_serves(control, spawn, file):
     keys = {"/a": "j0", "/**/b": "j1", "c": "j2"}
     entries = {key: node(type=POSITION, joints=[joint]) for key, joint in keys.items()}
     nested = {"/**": {"d": node(type=POSITION, joints=["j3"])}}
@@ -50,9 +45,7 @@ def test_every_key_that_names_a_controller_serves(control: Any, spawn: Any, file
     assert claimed == {name: [f"j{i}/position"] for i, name in enumerate("abcd")}
 
 
-def test_a_file_may_be_known_to_the_manager_alone(
-    control: Any, spawn: Any, file: Any, set_parameter: Callable[..., Any]
-) -> None:
+def test_a_file_may_be_known_to_the_manager_alone(control, spawn, file, set_parameter):
     path = file({"known": node(joints=["j1"])})
     assert set_parameter("/controller_manager", "known.type", POSITION).successful
     assert set_parameter("/controller_manager", "known.params_file", path).successful
@@ -61,9 +54,7 @@ def test_a_file_may_be_known_to_the_manager_alone(
 
 
 @pytest.mark.parametrize("order", [("j1", "j2"), ("j2", "j1")])
-def test_of_several_files_the_last_wins(
-    control: Any, spawn: Any, file: Any, get_parameter: Callable[..., Any], order: tuple[str, str]
-) -> None:
+def test_of_several_files_the_last_wins(control, spawn, file, get_parameter, order):
     files = [file({"fresh": node(type=POSITION, joints=[joint])}, joint) for joint in order]
     other = file({"another": node(type=POSITION)}, "other")
     spawn("fresh", "--inactive", "-p", files[0], "-p", other, "-p", files[1]).succeed()
@@ -72,16 +63,14 @@ def test_of_several_files_the_last_wins(
     assert get_parameter("/controller_manager", "fresh.params_file") == files
 
 
-def test_a_file_of_the_spawners_own_node_serves_the_controller(
-    control: Any, spawn: Any, file: Any
-) -> None:
+def test_a_file_of_the_spawners_own_node_serves_the_controller(control, spawn, file):
     own = file({"fresh": node(type=POSITION, joints=["j0"])}, "own")
     ros = file({"fresh": node(joints=["j3"])}, "ros")
     spawn("fresh", "--inactive", "-p", own, "--ros-args", "--params-file", ros).succeed()
     assert control.list()[0].required_command_interfaces == ["j3/position"]
 
 
-def test_a_missing_file_ends_with_a_sentence(control: Any, spawn: Any) -> None:
+def test_a_missing_file_ends_with_a_sentence(control, spawn):
     output = spawn("position_controller", "-p", "/no/such/file.yaml").fail()
     assert "cannot read parameter file '/no/such/file.yaml'" in output
 
@@ -98,22 +87,14 @@ def test_a_missing_file_ends_with_a_sentence(control: Any, spawn: Any) -> None:
     ],
 )
 def test_a_value_that_does_not_fit_is_refused_by_the_manager(
-    control: Any,
-    spawn: Any,
-    file: Any,
-    manager: Any,
-    values: dict[str, Any],
-    reason: str,
-    states: dict[str, str],
-) -> None:
+    control, spawn, file, manager, values, reason, states
+):
     spawn("fresh", "-p", file({"fresh": node(type=POSITION, **values)})).fail()
     manager.wait_for_line(f"controller 'fresh': {reason}")
     assert control.states() == states
 
 
-def test_ros_arguments_reach_the_controllers_node(
-    control: Any, spawn: Any, client: Any, get_parameter: Callable[..., Any]
-) -> None:
+def test_ros_arguments_reach_the_controllers_node(control, spawn, client, get_parameter):
     spawn(
         "position_controller",
         "--controller-ros-args",
@@ -127,7 +108,7 @@ def test_ros_arguments_reach_the_controllers_node(
     assert get_parameter("/position_controller", "thread_priority") == -7
 
 
-def test_controllers_may_have_options_of_their_own(control: Any, spawn: Any, file: Any) -> None:
+def test_controllers_may_have_options_of_their_own(control, spawn, file):
     first = file({"first": node(type=POSITION, joints=["j0"])}, "first")
     second = file({"second": node(type=POSITION, joints=["j1"])}, "second")
     spawner = spawn(
@@ -141,9 +122,7 @@ def test_controllers_may_have_options_of_their_own(control: Any, spawn: Any, fil
     assert control.states() == {"first": "inactive"}
 
 
-def test_in_a_namespace_a_key_must_name_it(
-    spawn: Any, run_manager: Any, control_of: Any, file: Any
-) -> None:
+def test_in_a_namespace_a_key_must_name_it(spawn, run_manager, control_of, file):
     run_manager(parameters={}, ros_arguments=("-r", "__ns:=/near"))
     namespace = ("--ros-args", "-r", "__ns:=/near")
     bare = file({"fresh": node(type=POSITION, joints=["j1"])}, "bare")

@@ -19,7 +19,7 @@ def load(planning: Any, path: Path) -> bool:
     return planning.call("/load_geometry_from_file", request).success
 
 
-def test_objects_come_back_from_a_file(planning: Any, box: Any, tmp_path: Path):
+def test_objects_come_back_from_a_file(planning, box, tmp_path):
     file = tmp_path / "table.scene"
     assert planning.apply_object(box("table", (0.3, 0.1, -0.05), (0.4, 0.6, 0.1)))
     assert save(planning, file)
@@ -31,7 +31,7 @@ def test_objects_come_back_from_a_file(planning: Any, box: Any, tmp_path: Path):
     assert loaded == saved
 
 
-def test_saving_leaves_only_the_file(planning: Any, box: Any, tmp_path: Path):
+def test_saving_leaves_only_the_file(planning, box, tmp_path):
     file = tmp_path / "table.scene"
     file.write_text("an older one")
     assert planning.apply_object(box("table", (0.3, 0.1, -0.05), (0.4, 0.6, 0.1)))
@@ -41,16 +41,14 @@ def test_saving_leaves_only_the_file(planning: Any, box: Any, tmp_path: Path):
 
 
 @pytest.mark.parametrize("place", ["", "no/such/folder/a.scene", "."])
-def test_a_file_that_cannot_be_written_is_refused(
-    planning: Any, launched: Any, tmp_path: Path, place: str
-):
+def test_a_file_that_cannot_be_written_is_refused(planning, launched, tmp_path, place):
     path = tmp_path / place if place else Path()
     assert not save(planning, path)
     launched.wait_for_line(f"cannot save the scene to '{path}'")
 
 
 def test_a_file_that_is_no_scene_changes_nothing_and_its_line_is_logged(
-    planning: Any, launched: Any, box: Any, tmp_path: Path
+    planning, launched, box, tmp_path
 ):
     file = tmp_path / "broken.scene"
     file.write_text("broken\n* ball\n0 0 0\n0 0 0 1\n1\nsfere\n")
@@ -60,7 +58,7 @@ def test_a_file_that_is_no_scene_changes_nothing_and_its_line_is_logged(
     assert [each.id for each in planning.scene().world.collision_objects] == ["table"]
 
 
-def test_files_that_would_hang_are_refused(planning: Any, tmp_path: Path):
+def test_files_that_would_hang_are_refused(planning, tmp_path):
     fifo = tmp_path / "fifo"
     os.mkfifo(fifo)
     for path in (fifo, Path("/dev/zero"), tmp_path / "missing"):

@@ -465,7 +465,7 @@ def test_a_straight_path_with_a_bad_step_or_frame_is_refused(planning, joints):
     assert "Unknown frame: nonsense" in answer.error_code.message
 
 
-def test_forty_requests_at_once_are_all_answered(planning: Any):
+def test_forty_requests_at_once_are_all_answered(planning):
     from moveit_msgs.srv import GetStateValidity
     from rclpy.qos import QoSProfile
 
@@ -481,7 +481,7 @@ def test_forty_requests_at_once_are_all_answered(planning: Any):
     assert len({answer.result().valid for answer in answers}) == 1
 
 
-def test_a_planners_parameters_are_set_and_told(planning: Any):
+def test_a_planners_parameters_are_set_and_told(planning):
     from moveit_msgs.msg import PlannerParams
     from moveit_msgs.srv import GetPlannerParams, SetPlannerParams
 

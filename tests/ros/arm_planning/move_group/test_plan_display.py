@@ -1,14 +1,12 @@
 """The topic display_planned_path: RViz sees each plan, whoever asked for it."""
 
-from typing import Any
-
 import pytest
 from moveit_msgs.msg import DisplayTrajectory, MotionSequenceItem, MotionSequenceRequest
 from moveit_msgs.srv import GetMotionSequence
 
 
 @pytest.fixture
-def shown(planning: Any) -> Any:
+def shown(planning):
     """Return the collector of what is displayed; move_group knows its subscription."""
     collector = planning.client.subscribe(DisplayTrajectory, "/display_planned_path")
     planning.client.be_known_to_server("/plan_kinematic_path")
@@ -16,9 +14,7 @@ def shown(planning: Any) -> Any:
 
 
 @pytest.mark.parametrize("asks", ["service", "action"])
-def test_a_plan_is_displayed_from_its_start(
-    planning: Any, shown: Any, request_of: Any, joint_goal: Any, joints: Any, asks: str
-):
+def test_a_plan_is_displayed_from_its_start(planning, shown, request_of, joint_goal, joints, asks):
     request = request_of(joint_goal(joints(0.4)), start=joints(0.8))
     if asks == "service":
         planned = planning.plan(request).trajectory
@@ -32,9 +28,7 @@ def test_a_plan_is_displayed_from_its_start(
     assert at == pytest.approx(0.8)
 
 
-def test_a_sequence_is_displayed_as_one_plan(
-    planning: Any, shown: Any, request_of: Any, joint_goal: Any, joints: Any
-):
+def test_a_sequence_is_displayed_as_one_plan(planning, shown, request_of, joint_goal, joints):
     ptp = {"max_velocity_scaling_factor": 0.5, "max_acceleration_scaling_factor": 0.5}
     arm = request_of(joint_goal(joints(0.4)), **ptp)
     gripper = request_of(joint_goal({"gripper_controller": -0.2}), group_name="gripper", **ptp)

@@ -20,7 +20,7 @@ PTP = {
 
 
 @pytest.fixture
-def motion(request_of: Any, joint_goal: Any) -> Callable[..., MotionSequenceItem]:
+def motion(request_of, joint_goal) -> Callable[..., MotionSequenceItem]:
     """Return a function that makes one motion of a sequence: joints to positions."""
 
     def make(goal: dict[str, float], radius: float = 0.0, **fields: Any) -> MotionSequenceItem:
@@ -31,7 +31,7 @@ def motion(request_of: Any, joint_goal: Any) -> Callable[..., MotionSequenceItem
 
 
 @pytest.fixture
-def planned(planning: Any) -> Callable[..., Any]:
+def planned(planning) -> Callable[..., Any]:
     """Return a function that plans motions with the service; it gives the response."""
 
     def plan(*items: MotionSequenceItem) -> Any:
@@ -42,7 +42,7 @@ def planned(planning: Any) -> Callable[..., Any]:
 
 
 @pytest.fixture
-def run(planning: Any) -> Callable[..., Any]:
+def run(planning) -> Callable[..., Any]:
     """Return a function that sends motions to the action; it gives the goal."""
 
     def send(*items: MotionSequenceItem, **options: Any) -> Any:
@@ -54,9 +54,7 @@ def run(planning: Any) -> Callable[..., Any]:
     return send
 
 
-def test_motions_of_a_group_become_one_trajectory_from_rest_to_rest(
-    planned: Any, motion: Any, joints: Any
-):
+def test_motions_of_a_group_become_one_trajectory_from_rest_to_rest(planned, motion, joints):
     response = planned(motion(joints(0.3)), motion(joints(0.3, 0.2)))
     assert response.error_code.val == SUCCESS
     (trajectory,) = response.planned_trajectories
@@ -70,16 +68,14 @@ def test_motions_of_a_group_become_one_trajectory_from_rest_to_rest(
     assert first == pytest.approx({name: given[name] for name in first}, abs=1e-6)
 
 
-def test_a_sequence_begins_at_the_start_state_of_its_first_motion(
-    planned: Any, motion: Any, joints: Any
-):
+def test_a_sequence_begins_at_the_start_state_of_its_first_motion(planned, motion, joints):
     response = planned(motion(joints(0.3), start=joints(0.8, 0.1)))
     assert response.error_code.val == SUCCESS
     first = response.planned_trajectories[0].joint_trajectory.points[0].positions
     np.testing.assert_allclose(first[:2], [0.8, 0.1], atol=1e-9)
 
 
-def test_an_empty_sequence_succeeds(planned: Any):
+def test_an_empty_sequence_succeeds(planned):
     response = planned()
     assert response.error_code.val == SUCCESS
     assert not response.planned_trajectories
@@ -97,27 +93,21 @@ def test_an_empty_sequence_succeeds(planned: Any):
         ({"group_name": "leg"}, MoveItErrorCodes.INVALID_GROUP_NAME, "no group 'leg'"),
     ],
 )
-def test_a_sequence_that_is_wrong_says_why(
-    planned: Any, motion: Any, joints: Any, second: dict, code: int, reason: str
-):
+def test_a_sequence_that_is_wrong_says_why(planned, motion, joints, second, code, reason):
     response = planned(motion(joints(0.3)), motion(joints(0.4), **second))
     assert response.error_code.val == code, response.error_code.message
     assert re.search(reason, response.error_code.message), response.error_code.message
     assert not response.planned_trajectories
 
 
-def test_a_sequence_through_a_thing_is_refused(
-    planning: Any, planned: Any, motion: Any, joints: Any, box: Any
-):
+def test_a_sequence_through_a_thing_is_refused(planning, planned, motion, joints, box):
     assert planning.apply_object(box("wall", (0.0, -0.25, 0.3), (0.02, 0.3, 0.6)))
     response = planned(motion(joints(-1.5, 1.5)), motion(joints(1.5, 1.5)))
     assert response.error_code.val == MoveItErrorCodes.INVALID_MOTION_PLAN
     assert "wall" in response.error_code.message
 
 
-def test_the_action_runs_all_trajectories_one_after_the_other(
-    planning: Any, run: Any, motion: Any, joints: Any
-):
+def test_the_action_runs_all_trajectories_one_after_the_other(planning, run, motion, joints):
     gripper = motion({"gripper_controller": -0.2}, group_name="gripper")
     goal = run(motion(joints(0.3)), gripper, motion(joints(0.1)))
     end = goal.end()
@@ -131,7 +121,7 @@ def test_the_action_runs_all_trajectories_one_after_the_other(
     )
 
 
-def test_plan_only_moves_nothing(planning: Any, run: Any, motion: Any, joints: Any):
+def test_plan_only_moves_nothing(planning, run, motion, joints):
     before = planning.stands_still()
     end = run(motion(joints(1.0)), plan_only=True).end()
     assert end.status == GoalStatus.STATUS_SUCCEEDED
@@ -139,9 +129,7 @@ def test_plan_only_moves_nothing(planning: Any, run: Any, motion: Any, joints: A
     assert planning.stands_still() == pytest.approx(before, abs=1e-3)
 
 
-def test_cancelling_stops_the_robot_and_what_would_follow(
-    planning: Any, run: Any, motion: Any, joints: Any
-):
+def test_cancelling_stops_the_robot_and_what_would_follow(planning, run, motion, joints):
     slow = {"max_velocity_scaling_factor": 0.05}
     gripper = motion({"gripper_controller": -0.6}, group_name="gripper")
     goal = run(motion(joints(2.5), **slow), gripper)

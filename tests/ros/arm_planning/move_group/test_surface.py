@@ -8,7 +8,7 @@ import pytest
 PAGE = Path(__file__).parents[4] / "docs" / "reference" / "moveit.md"
 EVERY_NODE_HAS = ("rcl_interfaces/", "type_description_interfaces/")
 TOPICS_OF_EVERY_NODE = ("/rosout", "/parameter_events", "/clock")
-NODE, SCENE_NODE = "move_group", "move_group_private_"
+NODE = "move_group"
 HIDDEN = "/_action/"
 
 
@@ -52,19 +52,19 @@ def actions_of(client: Any) -> dict[str, str]:
         ("Topics it publishes", "publisher"),
     ],
 )
-def test_the_page_lists_what_move_group_offers(planning: Any, title: str, what: str):
+def test_the_page_lists_what_move_group_offers(planning, title, what):
     client, page = planning.client, rows_of(title)
     client.wait_until(lambda: page.items() <= offered(client, what).items(), f"all of {page}")
     assert offered(client, what) == page
 
 
-def test_the_page_lists_the_actions(planning: Any):
+def test_the_page_lists_the_actions(planning):
     client, page = planning.client, rows_of("Actions")
     client.wait_until(lambda: page.items() <= actions_of(client).items(), f"all of {page}")
     assert actions_of(client) == page
 
 
-def test_the_page_names_the_planners_that_need_nothing(planning: Any):
+def test_the_page_names_the_planners_that_need_nothing(planning):
     from moveit_msgs.srv import QueryPlannerInterfaces
 
     answer = planning.call("/query_planner_interface", QueryPlannerInterfaces.Request())

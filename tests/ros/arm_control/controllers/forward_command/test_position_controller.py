@@ -9,7 +9,7 @@ COMMANDS = "/position_controller/commands"
 
 
 @pytest.fixture
-def publish(client: Any) -> Callable[..., None]:
+def publish(client) -> Callable[..., None]:
     """Return a function that publishes one command."""
     from std_msgs.msg import Float64MultiArray
 
@@ -24,7 +24,7 @@ def publish(client: Any) -> Callable[..., None]:
 
 
 @pytest.fixture
-def positions(control: Any, client: Any) -> Any:
+def positions(control, client):
     """Start both controllers; return what is published as joint states."""
     from sensor_msgs.msg import JointState
 
@@ -42,12 +42,12 @@ def wait_for(positions: Any, *expected: float) -> Any:
     return messages[-1]
 
 
-def test_a_command_shows_in_the_joint_states(positions: Any, publish: Any) -> None:
+def test_a_command_shows_in_the_joint_states(positions, publish):
     publish(0.1, 0.2, 0.3, 0.4)
     assert wait_for(positions, 0.1, 0.2, 0.3, 0.4).name == ["j0", "j1", "j2", "j3"]
 
 
-def test_messages_of_a_best_effort_publisher_arrive(positions: Any, client: Any) -> None:
+def test_messages_of_a_best_effort_publisher_arrive(positions, client):
     from rclpy.qos import qos_profile_sensor_data
     from std_msgs.msg import Float64MultiArray
 
@@ -57,8 +57,8 @@ def test_messages_of_a_best_effort_publisher_arrive(positions: Any, client: Any)
 
 
 def test_a_wrong_length_deactivates_it_and_the_log_says_how_to_go_on(
-    control: Any, positions: Any, publish: Any, manager: Any
-) -> None:
+    control, positions, publish, manager
+):
     publish(0.1, 0.2)
     manager.wait_for_line("command size (2) does not match number of interfaces (4)")
     manager.wait_for_line(

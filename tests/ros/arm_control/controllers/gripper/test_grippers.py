@@ -11,14 +11,14 @@ BEYOND_ITS_LIMIT = -4.0
 
 
 @pytest.fixture
-def active(control: Any) -> Any:
+def active(control):
     """Start the gripper that commands positions; return the manager's client."""
     control.start(GRIPPER)
     return control
 
 
 @pytest.fixture
-def patient(active: Any, set_parameter: Any) -> Any:
+def patient(active, set_parameter):
     """Let goals beyond the joint's limit last for ever; return the manager's client."""
     assert set_parameter(f"/{GRIPPER}", "stall_timeout", 1e6).successful
     return active
@@ -28,9 +28,7 @@ def count_actions(client: Any) -> int:
     return client.node.count_services(SEND_GOAL)
 
 
-def test_the_action_is_there_from_the_first_activation_on(
-    control: Any, client: Any, grip: Any, manager: Any
-) -> None:
+def test_the_action_is_there_from_the_first_activation_on(control, client, grip, manager):
     control.load(GRIPPER)
     control.configure(GRIPPER)
     assert count_actions(client) == 0
@@ -48,7 +46,7 @@ def test_the_action_is_there_from_the_first_activation_on(
     client.wait_until(lambda: count_actions(client) == 0, "the end of the action")
 
 
-def test_a_goal_is_reached(active: Any, grip: Any) -> None:
+def test_a_goal_is_reached(active, grip):
     answer = grip(-0.5, max_effort=5.0).wait()
     assert answer.status == SUCCEEDED
     assert (answer.result.reached_goal, answer.result.stalled) == (True, False)
@@ -56,7 +54,7 @@ def test_a_goal_is_reached(active: Any, grip: Any) -> None:
     assert answer.result.effort == 5.0
 
 
-def test_a_joint_that_cannot_go_on_aborts_the_goal(active: Any, grip: Any, manager: Any) -> None:
+def test_a_joint_that_cannot_go_on_aborts_the_goal(active, grip, manager):
     answer = grip(BEYOND_ITS_LIMIT).wait()
     assert answer.status == ABORTED
     assert (answer.result.reached_goal, answer.result.stalled) == (False, True)
@@ -64,7 +62,7 @@ def test_a_joint_that_cannot_go_on_aborts_the_goal(active: Any, grip: Any, manag
     manager.wait_for_line("joint 'j3': position command -4 rad is beyond its limit of -3.14 rad")
 
 
-def test_a_cancelled_goal_ends_with_an_empty_result(patient: Any, grip: Any) -> None:
+def test_a_cancelled_goal_ends_with_an_empty_result(patient, grip):
     goal = grip(BEYOND_ITS_LIMIT)
     assert goal.cancel() == 1
     answer = goal.wait()
@@ -73,9 +71,7 @@ def test_a_cancelled_goal_ends_with_an_empty_result(patient: Any, grip: Any) -> 
     assert not answer.result.stalled
 
 
-def test_the_action_works_again_after_another_configure(
-    active: Any, caller_of: Any, grip: Any
-) -> None:
+def test_the_action_works_again_after_another_configure(active, caller_of, grip):
     assert grip(-0.1).wait().status == SUCCEEDED
     assert active.switch([], [GRIPPER]).ok
     assert active.configure(GRIPPER)
@@ -84,9 +80,7 @@ def test_the_action_works_again_after_another_configure(
     assert grip(-0.2).wait().status == SUCCEEDED
 
 
-def test_effort_reaches_its_goal_and_pushes_a_wall_no_harder_than_allowed(
-    control: Any, grip: Any
-) -> None:
+def test_effort_reaches_its_goal_and_pushes_a_wall_no_harder_than_allowed(control, grip):
     control.start(EFFORT)
     answer = grip(-0.4, max_effort=3.0, controller=EFFORT).wait()
     assert (answer.status, answer.result.reached_goal) == (SUCCEEDED, True)
@@ -97,7 +91,7 @@ def test_effort_reaches_its_goal_and_pushes_a_wall_no_harder_than_allowed(
     assert 0.2 < answer.result.position < 1.0
 
 
-def test_parallel_reaches_its_goal_with_a_joint_state(control: Any, grip_parallel: Any) -> None:
+def test_parallel_reaches_its_goal_with_a_joint_state(control, grip_parallel):
     control.start(PARALLEL)
     answer = grip_parallel(-0.4, effort=[4.0]).wait()
     state = answer.result.state
@@ -109,9 +103,7 @@ def test_parallel_reaches_its_goal_with_a_joint_state(control: Any, grip_paralle
     assert list(answer.result.state.effort) == [10.0]
 
 
-def test_parallel_takes_exactly_one_position(
-    control: Any, grip_parallel: Any, manager: Any
-) -> None:
+def test_parallel_takes_exactly_one_position(control, grip_parallel, manager):
     control.start(PARALLEL)
     assert not grip_parallel().accepted
     assert not grip_parallel(0.1, 0.2).accepted

@@ -18,13 +18,13 @@ REACHED = (SUCCEEDED, 0, "Goal successfully reached!")
 
 
 @pytest.fixture
-def paused(manager: Any) -> Iterator[Any]:
+def paused(manager) -> Iterator[Any]:
     """Return a manager whose time a test may stop; it goes on afterwards."""
     yield manager
     manager.tell("resume")
 
 
-def test_a_goal_is_reached(active: Any, send: Any, states: Any) -> None:
+def test_a_goal_is_reached(active, send, states):
     goal = send((0.1, HERE), (0.2, THERE))
     assert goal.result() == REACHED
     states.wait_until(
@@ -33,7 +33,7 @@ def test_a_goal_is_reached(active: Any, send: Any, states: Any) -> None:
     )
 
 
-def test_feedback_comes_at_its_rate_of_the_controllers_time(active: Any, send: Any) -> None:
+def test_feedback_comes_at_its_rate_of_the_controllers_time(active, send):
     goal = send((0.5, THERE))
     goal.result()
     messages = goal.feedback.wait_for(9)  # The result may be taken before the last of it.
@@ -49,21 +49,19 @@ def test_feedback_comes_at_its_rate_of_the_controllers_time(active: Any, send: A
     assert len(last.actual.velocities) == 4
 
 
-def test_an_invalid_goal_is_rejected_with_the_reason(active: Any, send: Any, manager: Any) -> None:
+def test_an_invalid_goal_is_rejected_with_the_reason(active, send, manager):
     assert not send((1.0, HERE), joints=("j0", "j1", "j2", "j9")).accepted
     manager.wait_for_line("Incoming joint j9 doesn't match the controller's joints.")
 
 
-def test_a_goal_with_a_fault_can_be_aborted_with_the_reason(
-    active: Any, send: Any, set_parameter: Any
-) -> None:
+def test_a_goal_with_a_fault_can_be_aborted_with_the_reason(active, send, set_parameter):
     assert set_parameter(f"/{NAME}", "reject_with_reason", True).successful
     status, code, text = send((1.0, HERE), joints=("j0", "j1", "j2", "j9")).result()
     assert (status, code) == (ABORTED, -2)
     assert text == "Incoming joint j9 doesn't match the controller's joints."
 
 
-def test_a_goal_is_preempted_while_paused(active: Any, send: Any, paused: Any) -> None:
+def test_a_goal_is_preempted_while_paused(active, send, paused):
     first = send((FOR_EVER_S, THERE))
     paused.tell("pause")
     second = send((0.1, THERE))
@@ -73,20 +71,20 @@ def test_a_goal_is_preempted_while_paused(active: Any, send: Any, paused: Any) -
     assert second.result() == REACHED
 
 
-def test_a_goal_is_cancelled_while_paused(active: Any, send: Any, paused: Any) -> None:
+def test_a_goal_is_cancelled_while_paused(active, send, paused):
     goal = send((FOR_EVER_S, THERE))
     paused.tell("pause")
     assert goal.cancel() == 1
     assert goal.result() == (CANCELED, 0, "")
 
 
-def test_a_goal_that_has_ended_cannot_be_cancelled(active: Any, send: Any) -> None:
+def test_a_goal_that_has_ended_cannot_be_cancelled(active, send):
     goal = send((0.1, THERE))
     assert goal.result() == REACHED
     assert goal.cancel() == 0
 
 
-def test_goals_of_any_length_are_taken(active: Any, send: Any) -> None:
+def test_goals_of_any_length_are_taken(active, send):
     longest_s = 2.0e9
     goal = send((1.0, HERE), (longest_s, THERE))
     goal.wait_until_running()
@@ -96,9 +94,7 @@ def test_goals_of_any_length_are_taken(active: Any, send: Any) -> None:
     assert send((0.1, THERE)).result() == REACHED
 
 
-def test_a_flood_of_goals_leaves_the_last_one(
-    active: Any, client: Any, send: Any, manager: Any
-) -> None:
+def test_a_flood_of_goals_leaves_the_last_one(active, client, send, manager):
     assert send((0.1, THERE)).result() == REACHED
     sent = threading.Event()
     left = iter(range(100))
@@ -117,7 +113,7 @@ def test_a_flood_of_goals_leaves_the_last_one(
     assert "Traceback" not in manager.output
 
 
-def test_unloading_by_force_brings_the_result_first(active: Any, send: Any) -> None:
+def test_unloading_by_force_brings_the_result_first(active, send):
     goal = send((FOR_EVER_S, HERE))
     goal.wait_until_running()
     # Who has not asked when the action is withdrawn has no result coming.
@@ -126,7 +122,7 @@ def test_unloading_by_force_brings_the_result_first(active: Any, send: Any) -> N
     assert goal.result() == (ABORTED, -1, "Current goal cancelled during deactivate transition.")
 
 
-def test_the_action_works_again_after_another_configure(active: Any, send: Any) -> None:
+def test_the_action_works_again_after_another_configure(active, send):
     assert send((0.1, THERE)).result() == REACHED
     assert active.switch([], [NAME]).ok
     assert active.configure(NAME)
@@ -136,8 +132,8 @@ def test_the_action_works_again_after_another_configure(active: Any, send: Any) 
 
 
 def test_a_client_that_dies_in_the_middle_of_a_goal_does_no_harm(
-    active: Any, send: Any, send_and_die: Any, trajectory: Any, states: Any, manager: Any
-) -> None:
+    active, send, send_and_die, trajectory, states, manager
+):
     from control_msgs.action import FollowJointTrajectory
 
     goal = FollowJointTrajectory.Goal(trajectory=trajectory((1.0, [0.5] * 4)))

@@ -52,7 +52,7 @@ def seconds(time: Any) -> float:
 
 
 @pytest.fixture(scope="module")
-def manager(run: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
+def manager(run, tmp_path_factory):
     """Return the simulated arm as fast as it can be, with all the controllers."""
     kind = "joint_trajectory_controller/JointTrajectoryController"
     file = tmp_path_factory.mktemp("parameters") / "controllers.yaml"
@@ -69,7 +69,7 @@ def manager(run: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 @pytest.fixture
-def measured(client: Any) -> Callable[[str], list[float]]:
+def measured(client) -> Callable[[str], list[float]]:
     """Return a function that asks a controller where the joints are."""
     from control_msgs.srv import QueryTrajectoryState
 
@@ -83,9 +83,7 @@ def measured(client: Any) -> Callable[[str], list[float]]:
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_goal_is_reached(
-    control: Any, sender_to: Callable[[str], Any], measured: Callable[[str], list[float]], name: str
-) -> None:
+def test_a_goal_is_reached(control, sender_to, measured, name):
     control.start(name)
     send = sender_to(name)
     for target in (THERE, HOME):
@@ -93,7 +91,7 @@ def test_a_goal_is_reached(
         assert measured(name) == pytest.approx(list(target), abs=0.05)
 
 
-def test_feedback_follows_simulation_time(control: Any, sender_to: Callable[[str], Any]) -> None:
+def test_feedback_follows_simulation_time(control, sender_to):
     control.start("position_commands")
     goal = sender_to("position_commands")((1.0, THERE), (10.0, HOME))
     assert goal.result() == REACHED

@@ -13,7 +13,7 @@ ACTION = f"/{NAME}/follow_joint_trajectory/_action"
 
 
 @pytest.fixture
-def loaded(control: Any) -> Any:
+def loaded(control):
     """Configure the controller, and leave it inactive."""
     assert control.load(NAME)
     assert control.configure(NAME)
@@ -21,7 +21,7 @@ def loaded(control: Any) -> Any:
 
 
 @pytest.fixture
-def query(client: Any) -> Callable[[float], Any]:
+def query(client) -> Callable[[float], Any]:
     """Return a function that asks for the state at a time."""
     from builtin_interfaces.msg import Time
     from control_msgs.srv import QueryTrajectoryState
@@ -57,8 +57,8 @@ def time_of(message: Any) -> float:
     ids=lambda value: value if value.startswith("/") else "",
 )
 def test_end_points_of_an_inactive_one_are_those_of_a_real_one(
-    loaded: Any, client: Any, topic: str, kind: str, type_: str, reliability: str, durability: str
-) -> None:
+    loaded, client, topic, kind, type_, reliability, durability
+):
     read = getattr(client.node, f"get_{kind}_info_by_topic")
     # The name of its node arrives later than the end point.
     client.wait_until(lambda: [e.node_name for e in read(topic)] == [NAME], f"{kind} of {topic}")
@@ -68,7 +68,7 @@ def test_end_points_of_an_inactive_one_are_those_of_a_real_one(
     assert end_point.qos_profile.durability.name == durability
 
 
-def test_its_services_are_those_of_a_real_one(loaded: Any, client: Any) -> None:
+def test_its_services_are_those_of_a_real_one(loaded, client):
     expected = {
         f"{ACTION}/cancel_goal": ["action_msgs/srv/CancelGoal"],
         f"{ACTION}/get_result": ["control_msgs/action/FollowJointTrajectory_GetResult"],
@@ -87,7 +87,7 @@ def test_its_services_are_those_of_a_real_one(loaded: Any, client: Any) -> None:
     assert {name: found[name] for name in expected} == expected
 
 
-def test_end_points_go_with_the_cleanup(loaded: Any, client: Any) -> None:
+def test_end_points_go_with_the_cleanup(loaded, client):
     topics = [f"/{NAME}/joint_trajectory", f"{ACTION}/status", f"/{NAME}/controller_state"]
 
     def count() -> int:
@@ -99,7 +99,7 @@ def test_end_points_go_with_the_cleanup(loaded: Any, client: Any) -> None:
     client.wait_until(lambda: count() == 0, "no end points")
 
 
-def test_the_state_is_published_in_every_cycle(active: Any, states: Any) -> None:
+def test_the_state_is_published_in_every_cycle(active, states):
     messages = states.wait_for(20)[-10:]
     assert list(messages[0].joint_names) == JOINTS
     assert messages[0].speed_scaling_factor == 1.0
@@ -107,9 +107,7 @@ def test_the_state_is_published_in_every_cycle(active: Any, states: Any) -> None
     assert times_s == pytest.approx([times_s[0] + 0.01 * i for i in range(10)])
 
 
-def test_the_state_has_what_is_wanted_measured_and_commanded(
-    active: Any, send: Any, states: Any
-) -> None:
+def test_the_state_has_what_is_wanted_measured_and_commanded(active, send, states):
     states.wait_for(1)  # Matched: the first state at the goal will not be missed.
     send((0.1, THERE)).result()
 
@@ -128,17 +126,13 @@ def test_the_state_has_what_is_wanted_measured_and_commanded(
     assert [part.time_from_start.nanosec for part in parts] == [pytest.approx(100_000_000)] * 2
 
 
-def test_a_late_subscriber_gets_the_last_state_of_an_inactive_one(
-    active: Any, send: Any, request: pytest.FixtureRequest
-) -> None:
+def test_a_late_subscriber_gets_the_last_state_of_an_inactive_one(active, send, request):
     send((0.1, THERE)).result()  # stopped sooner, it might never have been updated
     assert active.switch([], [NAME]).ok
     assert request.getfixturevalue("states").wait_for(1)
 
 
-def test_a_trajectory_on_the_topic_is_followed(
-    active: Any, client: Any, trajectory: Any, states: Any
-) -> None:
+def test_a_trajectory_on_the_topic_is_followed(active, client, trajectory, states):
     from rclpy.qos import qos_profile_sensor_data
     from trajectory_msgs.msg import JointTrajectory
 
@@ -158,8 +152,8 @@ def test_a_trajectory_on_the_topic_is_followed(
 
 
 def test_a_faulty_trajectory_on_the_topic_is_dropped_with_the_reason(
-    active: Any, client: Any, trajectory: Any, manager: Any
-) -> None:
+    active, client, trajectory, manager
+):
     from trajectory_msgs.msg import JointTrajectory
 
     publisher = client.publisher(JointTrajectory, f"/{NAME}/joint_trajectory")
@@ -168,9 +162,7 @@ def test_a_faulty_trajectory_on_the_topic_is_dropped_with_the_reason(
     assert reason in manager.wait_for_line(reason)
 
 
-def test_query_state_returns_future_set_points(
-    active: Any, send: Any, states: Any, query: Any
-) -> None:
+def test_query_state_returns_future_set_points(active, send, states, query):
     send((100.0, (100.0, 0.0, 0.0, 0.0)))
     (message, *_) = states.wait_until(
         lambda messages: messages and messages[-1].reference.velocities[0] > 0.0, "it moves"
@@ -188,9 +180,7 @@ def test_query_state_returns_future_set_points(
     assert [list(late.velocity), list(late.acceleration)] == [[0.0] * 4] * 2
 
 
-def test_query_state_answers_while_paused(
-    active: Any, states: Any, query: Any, manager: Any
-) -> None:
+def test_query_state_answers_while_paused(active, states, query, manager):
     states.wait_for(1)
     manager.tell("pause")
     try:
@@ -200,8 +190,8 @@ def test_query_state_answers_while_paused(
 
 
 def test_speed_scaling_stops_the_trajectory_and_lets_it_go_on(
-    active: Any, client: Any, send: Any, states: Any, latched: Any
-) -> None:
+    active, client, send, states, latched
+):
     from control_msgs.msg import SpeedScalingFactor
 
     publisher = client.publisher(SpeedScalingFactor, f"/{NAME}/speed_scaling_input", latched)
@@ -218,16 +208,14 @@ def test_speed_scaling_stops_the_trajectory_and_lets_it_go_on(
     assert goal.result()[1] == 0
 
 
-def test_a_tolerance_changes_while_it_is_active(active: Any, send: Any, set_parameter: Any) -> None:
+def test_a_tolerance_changes_while_it_is_active(active, send, set_parameter):
     with_a_jump = ((0.0, (9, 9, 9, 9)), (0.1, HERE))
     assert send(*with_a_jump).result()[1] == 0
     assert set_parameter(f"/{NAME}", "constraints.j0.trajectory", 0.01).successful
     assert send(*with_a_jump).result()[1] == -4
 
 
-def test_parameters_cannot_change_while_the_loop_is_blocked(
-    active: Any, set_parameter: Any, manager: Any
-) -> None:
+def test_parameters_cannot_change_while_the_loop_is_blocked(active, set_parameter, manager):
     manager.tell("block")
     try:
         result = set_parameter(f"/{NAME}", "cmd_timeout", 1.0)

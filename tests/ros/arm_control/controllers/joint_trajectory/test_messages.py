@@ -1,7 +1,5 @@
 """Conversions between messages and the joint trajectory controller's own types."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -24,27 +22,27 @@ LAYOUT = StateLayout(
 
 
 @pytest.fixture
-def messages() -> Any:
+def messages():
     import arm_control.controllers.joint_trajectory.ros
 
     return arm_control.controllers.joint_trajectory.ros
 
 
 @pytest.fixture
-def times() -> Any:
+def times():
     import arm_control.controllers.ros_adapter
 
     return arm_control.controllers.ros_adapter
 
 
-def test_seconds_of_negative_durations(times: Any) -> None:
+def test_seconds_of_negative_durations(times):
     from builtin_interfaces.msg import Duration
 
     assert times.seconds_of(Duration(sec=-1, nanosec=0)) == -1.0
     assert times.seconds_of(Duration(sec=-1, nanosec=500_000_000)) == -0.5
 
 
-def test_a_trajectory() -> None:
+def test_a_trajectory():
     from builtin_interfaces.msg import Duration
     from rclpy.serialization import serialize_message
     from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -68,7 +66,7 @@ def test_a_trajectory() -> None:
     assert [list(point.accelerations), list(point.effort)] == [[], [5.0, 6.0]]
 
 
-def test_a_goal_with_tolerances(messages: Any) -> None:
+def test_a_goal_with_tolerances(messages):
     from builtin_interfaces.msg import Duration
     from control_msgs.action import FollowJointTrajectory
     from control_msgs.msg import JointTolerance as Message
@@ -87,12 +85,12 @@ def test_a_goal_with_tolerances(messages: Any) -> None:
     assert request.goal_time_tolerance_s == 2.0
 
 
-def test_a_result(messages: Any) -> None:
+def test_a_result(messages):
     result = messages.result_message(GoalResult.aborted(ErrorCode.PATH_TOLERANCE_VIOLATED, "off"))
     assert (result.error_code, result.error_string) == (-4, "off")
 
 
-def test_feedback(messages: Any, times: Any) -> None:
+def test_feedback(messages, times):
     feedback = Feedback(
         2.5,
         Progress(0.75, 1.0),
@@ -122,14 +120,12 @@ def test_feedback(messages: Any, times: Any) -> None:
         (-1e12, (-(2**31), 0)),
     ],
 )
-def test_a_duration_is_as_long_as_it_can_be(
-    times: Any, time_s: float, parts: tuple[int, int]
-) -> None:
+def test_a_duration_is_as_long_as_it_can_be(times, time_s, parts):
     message = times.duration_message(time_s)
     assert (message.sec, message.nanosec) == parts
 
 
-def test_an_answer_of_a_controller_without_motion_has_no_names(messages: Any) -> None:
+def test_an_answer_of_a_controller_without_motion_has_no_names(messages):
     from control_msgs.srv import QueryTrajectoryState
 
     response = QueryTrajectoryState.Response()
@@ -137,7 +133,7 @@ def test_an_answer_of_a_controller_without_motion_has_no_names(messages: Any) ->
     assert (response.success, response.message, list(response.name)) == (False, "asleep", [])
 
 
-def test_an_answer_with_motion(messages: Any) -> None:
+def test_an_answer_with_motion(messages):
     from control_msgs.srv import QueryTrajectoryState
 
     response = QueryTrajectoryState.Response()

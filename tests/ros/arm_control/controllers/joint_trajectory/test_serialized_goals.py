@@ -8,7 +8,7 @@ pytestmark = pytest.mark.workaround("serialized_goals")
 
 
 @pytest.fixture
-def goals() -> Any:
+def goals():
     import arm_control.controllers.joint_trajectory.ros_serialized_goals
 
     return arm_control.controllers.joint_trajectory.ros_serialized_goals
@@ -45,9 +45,7 @@ def make_request(names: list[str], sizes: list[int]) -> Any:
     ("names", "sizes"),
     [([], []), (["j0"], [1]), (["j0", "second"], [2] * 5), (["a", "b", "c"], [3, 0, 2, 3])],
 )
-def test_waypoints_stay_bytes_and_the_rest_is_a_message(
-    goals: Any, names: list[str], sizes: list[int]
-) -> None:
+def test_waypoints_stay_bytes_and_the_rest_is_a_message(goals, names, sizes):
     request = make_request(names, sizes)
     conversion = goals.GoalConversion()
     assert conversion.reads(request)
@@ -61,7 +59,7 @@ def test_waypoints_stay_bytes_and_the_rest_is_a_message(
     assert [list(point.effort) for point in read] == [[0.5] * n for n in sizes]
 
 
-def test_the_installed_rclpy_supports_it(goals: Any) -> None:
+def test_the_installed_rclpy_supports_it(goals):
     """Otherwise a large goal would stop the control loop as long as rclpy converts it."""
     from control_msgs.action import FollowJointTrajectory
 
@@ -71,9 +69,7 @@ def test_the_installed_rclpy_supports_it(goals: Any) -> None:
 
 
 @pytest.mark.parametrize("fault", [OSError, AttributeError, ValueError])
-def test_where_it_cannot_goals_are_taken_as_messages(
-    goals: Any, monkeypatch: pytest.MonkeyPatch, fault: type[Exception]
-) -> None:
+def test_where_it_cannot_goals_are_taken_as_messages(goals, monkeypatch, fault):
     from control_msgs.action import FollowJointTrajectory
 
     def refuse(_self: Any) -> None:
