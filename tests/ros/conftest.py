@@ -14,8 +14,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import rclpy
 import yaml
 from programs import Program
+from rcl_interfaces.srv import GetParameters
+from rcl_interfaces.srv import SetParametersAtomically as Service
+from rclpy.action import ActionClient
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter, parameter_value_to_python
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.signals import SignalHandlerOptions
+
+from arm_node.testing import DiscoveryCheck
+from arm_node.workarounds.discovery import first_node
 
 WAIT_TIMEOUT_S = 60.0
 QUEUE_DEPTH = 1000
@@ -144,14 +157,6 @@ class Client:
     """
 
     def __init__(self, domain: int | None = None) -> None:
-        import rclpy
-        from rclpy.context import Context
-        from rclpy.executors import SingleThreadedExecutor
-        from rclpy.node import Node
-        from rclpy.signals import SignalHandlerOptions
-
-        from arm_node.workarounds.discovery import first_node
-
         self.context = Context()
         rclpy.init(
             context=self.context, signal_handler_options=SignalHandlerOptions.NO, domain_id=domain
@@ -229,9 +234,6 @@ class Client:
         Returns:
             why they were refused, "" if they are set.
         """
-        from rcl_interfaces.srv import SetParametersAtomically as Service
-        from rclpy.parameter import Parameter
-
         named = [Parameter(name.replace("__", "."), value=v) for name, v in values.items()]
         request = Service.Request(parameters=[each.to_parameter_msg() for each in named])
         result = self.call(Service, f"{node}/set_parameters_atomically", request).result
@@ -240,9 +242,6 @@ class Client:
 
     def get_parameter(self, node: str, name: str) -> Any:
         """Return a parameter of a node, None where it has no such one."""
-        from rcl_interfaces.srv import GetParameters
-        from rclpy.parameter import parameter_value_to_python
-
         request = GetParameters.Request(names=[name])
         (message,) = self.call(GetParameters, f"{node}/get_parameters", request).values
         value = parameter_value_to_python(message)
@@ -257,8 +256,6 @@ class Client:
 
     def action(self, action_type: type, name: str, timeout_s: float = WAIT_TIMEOUT_S) -> Any:
         """Return a client of an action whose server has discovered all of it."""
-        from rclpy.action import ActionClient
-
         made = self.run(lambda: ActionClient(self.node, action_type, name), name)
         self._actions.append(made)
         self.wait_until(made.server_is_ready, f"the action {name}", timeout_s)
@@ -280,14 +277,10 @@ class Client:
 
     def be_known_to_readers(self, topic: str) -> None:
         """Block until the readers of a topic have discovered all endpoints of this node."""
-        from arm_node.testing import DiscoveryCheck
-
         self._complete(DiscoveryCheck(self.node, topic))
 
     def be_known_to_server(self, service: str) -> None:
         """Block until a service's server has discovered all endpoints of this node."""
-        from arm_node.testing import DiscoveryCheck
-
         self._complete(DiscoveryCheck.with_server(self.node, service))
 
     def _complete(self, check: Any) -> None:
@@ -366,8 +359,6 @@ def client_for_file() -> Iterator[Client]:
 @pytest.fixture(scope="session")
 def latched() -> Any:
     """Return the QoS of a topic whose last message late subscribers get."""
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-
     return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 

@@ -13,6 +13,13 @@ from pathlib import Path
 import numpy as np
 import psutil
 import pytest
+from controller_manager_msgs.msg import ControllerManagerActivity
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import CameraInfo, Image, JointState
+from std_msgs.msg import Float64MultiArray
+from tf2_msgs.msg import TFMessage
 
 from launch_py.fast_dds.shared_memory import PREFIXES, lock_files, lock_owners
 
@@ -96,9 +103,6 @@ def arm(launch_for_class):
 class TestAsItStarts:
     def test_a_float64_multi_array_moves_the_arm_and_nothing_overrides_it(self, client):
         """The controller node has no pose of its own, so the first command stands."""
-        from sensor_msgs.msg import JointState
-        from std_msgs.msg import Float64MultiArray
-
         topic = "/position_controller/commands"
         states = client.subscribe(JointState, "/joint_states")
         commands = client.subscribe(Float64MultiArray, topic)
@@ -117,11 +121,6 @@ class TestAsItStarts:
         assert len(commands.wait_for(1)) == 1
 
     def test_stamps_are_simulation_time_and_follow_the_clock(self, client, latched):
-        from controller_manager_msgs.msg import ControllerManagerActivity
-        from diagnostic_msgs.msg import DiagnosticArray
-        from rosgraph_msgs.msg import Clock
-        from sensor_msgs.msg import JointState
-
         clock = client.subscribe(Clock, "/clock")
         states = client.subscribe(JointState, "/joint_states")
         # A subscription may be matched later than the other one.
@@ -150,9 +149,6 @@ class TestAsItStarts:
         )
 
     def test_the_frames_of_the_arm_are_in_tf(self, client):
-        from rclpy.qos import DurabilityPolicy, QoSProfile
-        from tf2_msgs.msg import TFMessage
-
         latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         static = client.subscribe(TFMessage, "/tf_static", latched)
         moving = client.subscribe(TFMessage, "/tf")
@@ -162,8 +158,6 @@ class TestAsItStarts:
         assert {t.child_frame_id for t in frames} == {"base_turn_rot", "dyn2_r", "dyn3_r", "dyn4_r"}
 
     def test_the_camera_sends_pictures_and_a_matching_camera_info(self, client):
-        from sensor_msgs.msg import CameraInfo, Image
-
         images = client.subscribe(Image, "/videocamera")
         infos = client.subscribe(CameraInfo, "/camera_info")
         paired = client.subscribe(CameraInfo, "/videocamera/camera_info")
@@ -203,8 +197,6 @@ def test_a_stop_signal_ends_everything_with_exit_code_0(launch):
 
 def test_a_simulation_killed_with_its_cameras_leaves_no_shared_memory(launch, client):
     """What the simulation and its cameras share has no name; the middleware's files are removed."""
-    from sensor_msgs.msg import Image
-
     launched = launch()
     launched.wait_until_ready()
     client.subscribe(Image, "/videocamera").wait_for(1)
@@ -222,9 +214,6 @@ def test_a_simulation_killed_with_its_cameras_leaves_no_shared_memory(launch, cl
 
 
 def test_the_mock_arm_follows_commands_at_once(launch, client):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
     launched = launch("arm_control", "arm_mock.launch.py")
     launched.wait_until_ready()
     states = client.subscribe(JointState, "/joint_states")

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 from simulated import PAUSED, PLAYING, Simulated
 
 
@@ -25,8 +27,6 @@ position_controller:
 
 
 def test_the_arm_falls_without_position_hold(launch, client):
-    from sensor_msgs.msg import JointState
-
     launched = launch(
         "arm_gazebo",
         "arm_gazebo.launch.py",
@@ -47,8 +47,6 @@ def test_the_arm_falls_without_position_hold(launch, client):
 def test_unclaimed_joints_hold_the_initial_pose_at_a_rate_that_no_step_divides(
     launch, client, tmp_path
 ):
-    from sensor_msgs.msg import JointState
-
     rate_hz = 225  # The original's.
 
     path = write_controllers(tmp_path, rate_hz)
@@ -69,8 +67,6 @@ def test_what_the_node_refuses_ends_the_launch_with_its_sentence(launch):
 
 
 def test_a_paused_start_waits_for_play(launch, client):
-    from rosgraph_msgs.msg import Clock
-
     clock = client.subscribe(Clock, "/clock")
     launch("arm_gazebo", "arm_world.launch.py", "camera:=none", "paused:=true").wait_until_ready()
     simulation = Simulated(client)

@@ -10,11 +10,15 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import mujoco
 import numpy as np
 import psutil
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.qos import qos_profile_sensor_data
 from run_python import run_python
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 
 from arm_gazebo.camera.feed import CameraFeed
 from arm_gazebo.camera.process import CameraProcess
@@ -166,8 +170,6 @@ def red_centre(picture: np.ndarray) -> tuple[float, float]:
 @pytest.mark.usefixtures("simulation")
 class TestOneCamera:
     def test_the_intrinsics_project_the_ball_to_its_pixels(self, client):
-        from sensor_msgs.msg import CameraInfo, Image
-
         images = client.subscribe(Image, "/videocamera")
         infos = client.subscribe(CameraInfo, "/camera_info")
         image, info = images.wait_for(1)[0], infos.wait_for(1)[0]
@@ -179,8 +181,6 @@ class TestOneCamera:
         assert red_centre(pixels(image)) == pytest.approx((u / w, v / w), abs=1.0)
 
     def test_every_picture_has_a_camera_info_with_the_same_stamp_on_every_topic(self, client):
-        from sensor_msgs.msg import CameraInfo, Image
-
         names = ("/camera_info", "/videocamera/camera_info")
         topics = [client.subscribe(CameraInfo, name) for name in names]
         images = client.subscribe(Image, "/camera/image_raw")
@@ -192,8 +192,6 @@ class TestOneCamera:
             assert len({stamp_s(info) for info in infos}) == len(infos)
 
     def test_stamps_are_those_of_the_ticks_at_which_frames_are_due(self, client):
-        from sensor_msgs.msg import CameraInfo
-
         infos = client.subscribe(CameraInfo, "/camera_info").wait_for(10)
         for info in infos:
             time_s = stamp_s(info)
@@ -201,9 +199,6 @@ class TestOneCamera:
             assert (time_s * 30) % 1 < TICK_S * 30
 
     def test_compressed_pictures_show_the_same_image(self, client):
-        import cv2
-        from sensor_msgs.msg import CompressedImage, Image
-
         compressed = client.subscribe(CompressedImage, "/videocamera/compressed").wait_for(1)[0]
         image = client.subscribe(Image, "/videocamera").wait_for(1)[0]
         assert compressed.format == "rgb8; jpeg compressed bgr8"
@@ -215,9 +210,6 @@ class TestOneCamera:
 
 
 def test_a_lens_is_in_camera_info_in_the_picture_and_in_the_points(simulate, client):
-    import cv2
-    from sensor_msgs.msg import CameraInfo, Image, PointCloud2
-
     lens = replace(
         SENSOR,
         intrinsics=(350.0, 300.0, 150.0, 125.0, 0.0),
@@ -247,9 +239,6 @@ def test_a_lens_is_in_camera_info_in_the_picture_and_in_the_points(simulate, cli
 
 
 def test_best_effort_subscribers_get_large_noisy_pictures(simulate, client):
-    from rclpy.qos import qos_profile_sensor_data
-    from sensor_msgs.msg import Image
-
     large = CameraSensor(
         *("eye", "camera_link", "camera_optical_frame", 800, 800),
         noise_stddev=0.007,
@@ -265,9 +254,6 @@ def test_best_effort_subscribers_get_large_noisy_pictures(simulate, client):
 
 
 def test_without_subscribers_camera_infos_are_published_and_nothing_is_rendered(simulate, client):
-    from diagnostic_msgs.msg import DiagnosticArray
-    from sensor_msgs.msg import CameraInfo
-
     simulate()
     client.subscribe(CameraInfo, "/camera_info").wait_for(40)
     report = client.subscribe(DiagnosticArray, "/diagnostics").wait_for(1)[0]
@@ -278,9 +264,6 @@ def test_without_subscribers_camera_infos_are_published_and_nothing_is_rendered(
 
 
 def test_diagnostics_tell_rate_backend_and_viewers(simulate, client):
-    from diagnostic_msgs.msg import DiagnosticArray
-    from sensor_msgs.msg import Image
-
     simulate(render_backend="raycast")
     client.subscribe(Image, "/videocamera")
     reports = client.subscribe(DiagnosticArray, "/diagnostics").wait_until(
@@ -297,9 +280,6 @@ def test_diagnostics_tell_rate_backend_and_viewers(simulate, client):
 
 
 def test_a_simulation_too_fast_for_the_camera_is_a_warning(simulate, client):
-    from diagnostic_msgs.msg import DiagnosticArray
-    from sensor_msgs.msg import Image
-
     # Every tick of 10 ms passes five of these frames.
     fast = CameraSensor("eye", "l", "f", rate_hz=500.0, image_topics=("videocamera",))
     simulate(fast)
@@ -311,8 +291,6 @@ def test_a_simulation_too_fast_for_the_camera_is_a_warning(simulate, client):
 
 
 def test_the_cameras_are_in_the_simulation_s_namespace(simulate, client):
-    from sensor_msgs.msg import CameraInfo
-
     simulate(ros_arguments=("-r", "__ns:=/lab"))
     (info, *_) = client.subscribe(CameraInfo, "/lab/videocamera/camera_info").wait_for(1)
     assert info.width > 0
@@ -321,8 +299,6 @@ def test_the_cameras_are_in_the_simulation_s_namespace(simulate, client):
 
 @pytest.mark.parametrize("profile", ["dds_images.xml", "dds_images_small.xml"])
 def test_pictures_arrive_with_either_profile(simulate, client, profile):
-    from sensor_msgs.msg import Image
-
     file = Path(sys.prefix) / "share/arm_gazebo/config" / profile
     simulate(environ={"FASTRTPS_DEFAULT_PROFILES_FILE": str(file)})
     pictures = client.subscribe(Image, "/videocamera").wait_for(5)
@@ -331,9 +307,6 @@ def test_pictures_arrive_with_either_profile(simulate, client, profile):
 
 @pytest.mark.gl
 def test_after_a_crash_while_drawing_the_next_backend_is_used(simulate, client):
-    from diagnostic_msgs.msg import DiagnosticArray
-    from sensor_msgs.msg import Image
-
     simulation = simulate(render_backend="egl")
     images = client.subscribe(Image, "/videocamera")
     images.wait_for(1)
@@ -350,8 +323,6 @@ def test_after_a_crash_while_drawing_the_next_backend_is_used(simulate, client):
 
 
 def test_a_killed_camera_process_is_restarted(simulate, client):
-    from sensor_msgs.msg import CameraInfo
-
     simulation = simulate()
     infos = client.subscribe(CameraInfo, "/camera_info")
     infos.wait_for(1)
@@ -363,8 +334,6 @@ def test_a_killed_camera_process_is_restarted(simulate, client):
 
 
 def test_stopping_leaves_no_process_and_no_shared_memory(simulate, client):
-    from sensor_msgs.msg import Image
-
     simulation = simulate()
     client.subscribe(Image, "/videocamera").wait_for(2)
     child = simulation.child

@@ -2,17 +2,16 @@
 
 import numpy as np
 import pytest
+from controller_manager_msgs.srv import ListControllers
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
+from tf2_msgs.msg import TFMessage
 
 COPIES = 4
 
 
 def test_each_copy_moves_by_its_own_topic_and_stands_at_its_own_place(launch, client):
-    from controller_manager_msgs.srv import ListControllers
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-    from tf2_msgs.msg import TFMessage
-
     launched = launch(f"copies:={COPIES}", "camera:=none", "copy_spacing:=0.75")
     launched.wait_until_ready()
     launched.wait_for_line("arm control list_controllers -c /arm_0/controller_manager")

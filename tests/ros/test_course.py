@@ -4,15 +4,14 @@ import math
 
 import numpy as np
 import pytest
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
 
 TOPIC = "/position_controller/commands"
 DECAY_S = 1 / (0.1 * 30)
 
 
 def test_course_s0_moves_as_the_original_does(launch, client):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
     launch("course:=S0", "camera:=none", "real_time_factor:=4").wait_until_ready()
     assert client.node.count_publishers(TOPIC) == 0
     client.wait_until(lambda: client.node.count_subscribers(TOPIC) == 1, "the controller")

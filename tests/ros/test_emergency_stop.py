@@ -4,10 +4,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+from action_msgs.msg import GoalStatus
+from control_msgs.action import FollowJointTrajectory
+from rclpy.duration import Duration
 from run_python import run_python
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool, Float64MultiArray
+from std_srvs.srv import SetBool
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from arm_cli.doctor.ros_observer import observe
 from arm_cli.doctor.verb import examine_running
 from arm_cli.ros.connection import connect
+from arm_description.resources import resolve_uri
+from arm_description.xacro.expansion import expand_xacro
 
 START_TIMEOUT_S = 120.0
 MOVING_RAD_S = 0.05
@@ -17,9 +27,6 @@ LEFT, RIGHT = ([f"{name}_j{number}" for number in range(4)] for name in ("left",
 @pytest.fixture(scope="module")
 def robots(simulate):
     """Run two arms: `left` follows trajectories, `right` follows positions."""
-    from arm_description.resources import resolve_uri
-    from arm_description.xacro.expansion import expand_xacro
-
     arm = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
     settings = {"robots": "left,right"}
     for name, y in (("left", -1.0), ("right", 1.0)):
@@ -48,8 +55,6 @@ class Arms:
     """What a client sees and does of the two arms."""
 
     def __init__(self, client) -> None:
-        from sensor_msgs.msg import JointState
-
         self._client = client
         self._states = {
             name: client.subscribe(JointState, f"/{name}/joint_states", 1000)
@@ -59,8 +64,6 @@ class Arms:
             states.wait_for(1, START_TIMEOUT_S)
 
     def stop(self, namespace: str = "", *, engaged: bool = True) -> str:
-        from std_srvs.srv import SetBool
-
         answer = self._client.call(
             SetBool, f"{namespace}/emergency_stop", SetBool.Request(data=engaged)
         )
@@ -109,10 +112,6 @@ def arms(robots, client) -> Arms:
 @pytest.fixture
 def goals(arms, client):
     """Send goals to the left arm's action, by a function: see `Client.send_goal`."""
-    from control_msgs.action import FollowJointTrajectory
-    from rclpy.duration import Duration
-    from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-
     name = "/left/mover/follow_joint_trajectory"
     action = client.action(FollowJointTrajectory, name, START_TIMEOUT_S)
 
@@ -128,9 +127,6 @@ def goals(arms, client):
 
 
 def test_one_robot_stops_and_the_other_goes_on(arms, goals, client):
-    from action_msgs.msg import GoalStatus
-    from std_msgs.msg import Float64MultiArray
-
     commands = client.publisher(Float64MultiArray, "/right/mover/commands")
     # So long that it is not over before the stop, however busy the machine.
     goal = arms.move("left", lambda: goals(0.8, 10.0))
@@ -152,10 +148,6 @@ def test_one_robot_stops_and_the_other_goes_on(arms, goals, client):
 
 
 def test_all_stop_by_the_topic_and_are_released_by_the_verb(arms, client, latched):
-    from std_msgs.msg import Bool, Float64MultiArray
-
-    from arm_cli.doctor.ros_observer import observe
-
     commands = client.publisher(Float64MultiArray, "/right/mover/commands")
     stop = client.publisher(Bool, "/emergency_stop")
     arms.move("right", lambda: commands.publish(Float64MultiArray(data=[-0.6] * len(LEFT))))

@@ -1,6 +1,8 @@
 """A simulated robot with GPIOs, as a client of ros2_control sees it."""
 
 import pytest
+from control_msgs.msg import DynamicInterfaceGroupValues, InterfaceValue
+from controller_manager_msgs.srv import ListHardwareComponents, ListHardwareInterfaces
 
 ROBOT = """<robot name="cell"><link name="world"/><link name="slide"><inertial><mass value="1"/>
 <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
@@ -32,8 +34,6 @@ def simulation(simulate):
 
 
 def test_commands_and_states_are_dynamic_interface_values(client):
-    from control_msgs.msg import DynamicInterfaceGroupValues, InterfaceValue
-
     states = client.subscribe(DynamicInterfaceGroupValues, f"/{NAME}/gpio_states")
     (first, *_) = states.wait_for()
     assert list(first.interface_groups) == ["lamp", "gauge"]
@@ -50,8 +50,6 @@ def test_commands_and_states_are_dynamic_interface_values(client):
 
 
 def test_they_are_listed_with_the_hardware(client):
-    from controller_manager_msgs.srv import ListHardwareComponents, ListHardwareInterfaces
-
     manager = "/controller_manager"
     listed = client.call(
         ListHardwareInterfaces,

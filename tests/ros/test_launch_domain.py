@@ -6,6 +6,8 @@ import signal
 
 import pytest
 from run_python import run_python
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -20,9 +22,6 @@ def domain_of(launched) -> int:
 
 
 def test_worlds_side_by_side_do_not_hear_each_other(launch, client_in):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
     worlds = [launch("domain:=auto", *SMALLEST) for _ in range(WORLDS)]
     for launched in worlds:
         launched.wait_until_ready()

@@ -11,6 +11,9 @@ import yaml
 from run_python import run_python
 from simulated import PAUSED, PLAYING, Simulated
 
+from arm_description.resources import resolve_uri
+from arm_description.xacro.expansion import expand_xacro
+
 PARTNER = Path(__file__).with_name("lock_step_partner.py")
 TIMEOUT_S = 120.0
 LAST = 400
@@ -19,9 +22,6 @@ LAST = 400
 @pytest.fixture(scope="module")
 def start(tmp_path_factory) -> Iterator[Callable[[], Path]]:
     """Start a simulation in lock-step with /partner, as fast as possible; return its log."""
-    from arm_description.resources import resolve_uri
-    from arm_description.xacro.expansion import expand_xacro
-
     arm = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
     settings = {
         "robot_description": expand_xacro(arm, {"camera": "none"}),

@@ -4,7 +4,13 @@ import threading
 from typing import Any
 
 import pytest
+from action_msgs.msg import GoalStatus
+from control_msgs.action import FollowJointTrajectory, GripperCommand
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 from simulated import OK, PAUSED, PLAYING, Simulated
+from tf2_msgs.msg import TFMessage
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 ARM, GRIPPER = "/arm_controller/follow_joint_trajectory", "/gripper_action_controller/gripper_cmd"
 JOINTS = (
@@ -27,9 +33,6 @@ class User(Simulated):
 
     def follow(self, position: float, seconds: int) -> Any:
         """Start a trajectory, and wait until it moves the arm; return the future of its result."""
-        from control_msgs.action import FollowJointTrajectory
-        from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-
         point = JointTrajectoryPoint(positions=[position] * len(JOINTS))
         point.time_from_start.sec = seconds
         goal = FollowJointTrajectory.Goal(
@@ -43,8 +46,6 @@ class User(Simulated):
 
     def grip(self, position: float) -> Any:
         """Start a motion of the gripper; return the future of its result."""
-        from control_msgs.action import GripperCommand
-
         goal = GripperCommand.Goal()
         goal.command.position, goal.command.max_effort = position, 5.0
         return self._start(GripperCommand, GRIPPER, goal)
@@ -82,11 +83,6 @@ def jumped_back(times_s: list[float]) -> bool:
 
 
 def test_clock_states_and_transforms_start_anew_and_goals_end_with_the_reason(user, client):
-    from action_msgs.msg import GoalStatus
-    from rosgraph_msgs.msg import Clock
-    from sensor_msgs.msg import JointState
-    from tf2_msgs.msg import TFMessage
-
     clock, states = client.subscribe(Clock, "/clock"), client.subscribe(JointState, "/joint_states")
     frames = client.subscribe(TFMessage, "/tf")
     clock.wait_until(lambda m: bool(m) and seconds(m[-1].clock) > 1.0, "a second of time")
@@ -111,16 +107,12 @@ def test_clock_states_and_transforms_start_anew_and_goals_end_with_the_reason(us
 
 
 def test_the_clock_alone_is_reset_and_a_goal_goes_on(user, client):
-    from action_msgs.msg import GoalStatus
-
     follow = user.follow(-0.3, 2)
     user.reset(SCOPE_TIME)
     assert user.result_of(follow).status == GoalStatus.STATUS_SUCCEEDED
 
 
 def test_a_parameter_lets_the_clock_go_on(user, client):
-    from rosgraph_msgs.msg import Clock
-
     assert user.set(reset_clock=False) == ""
     clock = client.subscribe(Clock, "/clock")
     clock.wait_until(lambda m: bool(m) and seconds(m[-1].clock) > 1.0, "a second of time")
@@ -150,9 +142,6 @@ def bits(states: list) -> dict[float, bytes]:
 
 
 def test_a_restored_run_publishes_the_same_bits_and_its_goal_goes_on(user, client, tmp_path):
-    from action_msgs.msg import GoalStatus
-    from sensor_msgs.msg import JointState
-
     def stepped() -> dict[float, bytes]:
         # A new subscription gets nothing that was published before the pause.
         new = client.subscribe(JointState, "/joint_states", 1000)
@@ -184,8 +173,6 @@ def test_a_restored_run_publishes_the_same_bits_and_its_goal_goes_on(user, clien
 
 
 def test_goals_that_a_snapshot_does_not_have_are_aborted(user):
-    from action_msgs.msg import GoalStatus
-
     assert user.snapshot("save", "idle").result == OK
     follow = user.follow(0.4, 100)
     assert user.snapshot("restore", "idle").result == OK
@@ -203,8 +190,6 @@ def test_goals_that_a_snapshot_does_not_have_are_aborted(user):
 
 
 def test_many_resets_leave_nothing_behind_and_no_goal_is_missed(user, client, simulation):
-    from action_msgs.msg import GoalStatus
-
     (process,) = simulation.processes("arm_gazebo_node")
 
     def load() -> tuple[int, int, float]:

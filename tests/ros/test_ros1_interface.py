@@ -5,7 +5,10 @@ import sys
 
 import numpy as np
 import pytest
+from controller_manager_msgs.srv import ListControllers
 from programs import RosProgram
+from sensor_msgs.msg import CameraInfo, Image, JointState
+from std_msgs.msg import Float64
 
 TYPE = "position_controllers/JointPositionController"
 ORIGINAL_POSE = [-5.0, 0.5, -1.2, -1.0]
@@ -18,9 +21,6 @@ def is_at(message, pose):
 
 
 def test_four_topics_move_the_arm_and_states_come_at_50_hz_beside_the_camera(launch, client):
-    from sensor_msgs.msg import CameraInfo, Image, JointState
-    from std_msgs.msg import Float64
-
     # In two steps, as the original is started.
     world = launch("arm_gazebo", "arm_world.launch.py", "interface:=ros1")
     world.wait_until_ready()
@@ -73,9 +73,6 @@ class TestOneLaunch:
     def test_the_original_s_node_exceeds_a_limit_and_gets_one_warning(
         self, launch, client, simulation
     ):
-        from controller_manager_msgs.srv import ListControllers
-        from sensor_msgs.msg import JointState
-
         listed = client.call(
             ListControllers, "/arm/controller_manager/list_controllers", ListControllers.Request()
         )
@@ -99,8 +96,6 @@ class TestOneLaunch:
 
 
 def test_several_managers_are_named(client):
-    from controller_manager_msgs.srv import ListControllers
-
     for side in ("left", "right"):
         name = f"/{side}/controller_manager/list_controllers"
         client.node.create_service(ListControllers, name, lambda _, answer: answer)

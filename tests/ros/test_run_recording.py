@@ -10,7 +10,10 @@ from pathlib import Path
 
 import pytest
 from programs import RosProgram
+from sensor_msgs.msg import JointState
 from simulated import Simulated
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import SetBool
 
 from arm_description.resources import resolve_uri
 from arm_description.xacro.expansion import expand_xacro
@@ -39,8 +42,6 @@ def record_verb(path: Path) -> Iterator[RosProgram]:
 
 def move(client, commands, states, *positions: float) -> None:
     """Command the arm, and wait until it is there."""
-    from std_msgs.msg import Float64MultiArray
-
     commands.publish(Float64MultiArray(data=list(positions)))
     states.wait_until(
         lambda m: bool(m) and abs(m[-1].position[0] - positions[0]) < 0.01, "the arm there"
@@ -48,16 +49,12 @@ def move(client, commands, states, *positions: float) -> None:
 
 
 def states_of(client):
-    from sensor_msgs.msg import JointState
-
     return client.subscribe(JointState, "/joint_states")
 
 
 def test_a_launch_is_recorded_from_its_start_also_if_the_simulation_is_killed(
     launch, client, tmp_path
 ):
-    from std_msgs.msg import Float64MultiArray
-
     path = tmp_path / "killed.run"
     running = launch(f"record_run:={path}", "camera:=none")
     running.wait_until_ready()
@@ -81,9 +78,6 @@ def test_a_launch_is_recorded_from_its_start_also_if_the_simulation_is_killed(
 def test_a_recording_is_refused_in_a_sentence_and_begins_and_ends_by_a_parameter(
     launch, client, tmp_path
 ):
-    from std_msgs.msg import Float64MultiArray
-    from std_srvs.srv import SetBool
-
     def record_to(file) -> str:
         return simulation.set(record_run=str(file))
 

@@ -5,6 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
+from geometry_msgs.msg import WrenchStamped
+from sensor_msgs.msg import CameraInfo, Image, Imu, PointCloud2
+from std_msgs.msg import Bool, Float64MultiArray
 
 PATIENCE_S = 90.0
 G = 9.81
@@ -103,8 +106,6 @@ def common(first, second) -> list:
 
 
 def test_the_imu_and_its_broadcaster_publish_the_same_state(lab, client):
-    from sensor_msgs.msg import Imu
-
     own = client.subscribe(Imu, "/imu/data")
     broadcast = client.subscribe(Imu, "/imu_broadcaster/imu")
     client.wait_until(lambda: common(own, broadcast), "the same stamp on both topics", PATIENCE_S)
@@ -118,8 +119,6 @@ def test_the_imu_and_its_broadcaster_publish_the_same_state(lab, client):
 
 
 def test_a_force_torque_sensor_measures_the_weight_of_the_arm(lab, client):
-    from geometry_msgs.msg import WrenchStamped
-
     for topic, frame in (("/wrist", "arm"), ("/ft_broadcaster/wrench", "tool")):
         (message, *_) = client.subscribe(WrenchStamped, topic).wait_for(1, PATIENCE_S)
         assert message.header.frame_id == frame
@@ -132,8 +131,6 @@ def test_a_force_torque_sensor_measures_the_weight_of_the_arm(lab, client):
     [("/front/depth_image", "/front/camera_info", 96), ("/ranger", "/ranger/camera_info", 32)],
 )
 def test_depth_is_in_metres_and_comes_with_its_camera_info(lab, client, topic, info, width):
-    from sensor_msgs.msg import CameraInfo, Image
-
     images, infos = client.subscribe(Image, topic), client.subscribe(CameraInfo, info)
     client.wait_until(lambda: common(images, infos), "an image and its info", PATIENCE_S)
     image, about = common(images, infos)[-1]
@@ -146,8 +143,6 @@ def test_depth_is_in_metres_and_comes_with_its_camera_info(lab, client, topic, i
 
 
 def test_points_have_position_and_colour(lab, client):
-    from sensor_msgs.msg import Image, PointCloud2
-
     clouds = client.subscribe(PointCloud2, "/front/points")
     images = client.subscribe(Image, "/front/image")
     client.wait_until(
@@ -165,17 +160,12 @@ def test_points_have_position_and_colour(lab, client):
 
 
 def test_a_plain_camera_beside_them_has_its_own_size_and_rate(lab, client):
-    from sensor_msgs.msg import Image
-
     images = client.subscribe(Image, "/plain").wait_for(3, PATIENCE_S)
     assert {(image.width, image.height, image.encoding) for image in images} == {(64, 48, "rgb8")}
     assert {stamp_ns(image) % 50_000_000 for image in images} == {0}
 
 
 def test_contact_is_published_when_the_arm_touches_down(lab, client):
-    from geometry_msgs.msg import WrenchStamped
-    from std_msgs.msg import Bool, Float64MultiArray
-
     states = client.subscribe(Bool, "/bumper/in_contact")
     forces = client.subscribe(WrenchStamped, "/bumper")
     assert not states.wait_for(1, PATIENCE_S)[0].data

@@ -2,7 +2,12 @@
 
 import numpy as np
 import pytest
+from controller_manager_msgs.srv import ListControllers
 from robots import TETRAHEDRON_OBJ
+from sensor_msgs.msg import Image, JointState
+from std_msgs.msg import Float64MultiArray, String
+
+from arm_description import ResourceFinder
 
 FRAME = '<link name="base_link"/><link name="upper"/><link name="lower"/>'
 LIMIT = '<limit lower="-2" upper="2" effort="20" velocity="2"/>'
@@ -38,9 +43,6 @@ def sdf_world(tmp_path):
 
 
 def test_a_robot_without_hardware_and_controllers_moves(launch, client, bare, sdf_world):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
     launched = launch(
         "arm_gazebo",
         "sim.launch.py",
@@ -71,10 +73,6 @@ def test_a_robot_without_hardware_and_controllers_moves(launch, client, bare, sd
 def test_a_user_s_package_is_not_shadowed_by_the_suite_s_package_of_that_name(
     launch, client, tmp_path, latched
 ):
-    from std_msgs.msg import String
-
-    from arm_description import ResourceFinder
-
     package = tmp_path / "arm_description"
     (package / "meshes").mkdir(parents=True)
     (package / "package.xml").write_text("<package><name>arm_description</name></package>")
@@ -99,8 +97,6 @@ def test_a_user_s_package_is_not_shadowed_by_the_suite_s_package_of_that_name(
 
 def test_a_mast_s_camera_publishes_pictures(launch, client, tmp_path):
     """Nothing on the mast moves, so it needs no controller."""
-    from sensor_msgs.msg import Image
-
     mast = tmp_path / "mast.urdf"
     mast.write_text(
         '<robot name="mast"><link name="foot"/><link name="top"/>'
@@ -139,8 +135,6 @@ def foreign(tmp_path):
 
 
 def test_controllers_that_do_not_fit_the_robot_are_left_out(launch, client, bare, foreign):
-    from controller_manager_msgs.srv import ListControllers
-
     launched = launch("arm_gazebo", "sim.launch.py", f"model:={bare}", f"controllers:={foreign}")
     launched.wait_until_ready()
     launched.wait_for_line("force does not start: Unable to activate controller 'force' since the")
@@ -161,10 +155,6 @@ def test_a_named_controller_must_start(launch, bare, foreign):
 
 
 def test_two_robots_in_one_world_do_not_affect_each_other(launch, client, tmp_path):
-    from controller_manager_msgs.srv import ListControllers
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
     text = f'<robot name="$(arg p)" {XACRO}><xacro:arg name="p" default=""/>{FRAME}{JOINTS}</robot>'
     for name in ("base_link", "upper", "lower", "shoulder", "elbow"):
         text = text.replace(f'"{name}"', f'"$(arg p){name}"')

@@ -7,6 +7,9 @@ from pathlib import Path
 import pytest
 import yaml
 
+from arm_description.resources import resolve_uri
+from arm_description.xacro.expansion import expand_xacro
+
 PROGRAM = """
 import sys, threading
 from unittest import mock
@@ -26,9 +29,6 @@ print(code, threads, psutil.Process().children())
 @pytest.fixture(scope="module")
 def parameters(tmp_path_factory) -> Path:
     """A file that makes the simulation of the arm with its front camera."""
-    from arm_description.resources import resolve_uri
-    from arm_description.xacro.expansion import expand_xacro
-
     arm = resolve_uri("package://arm_description/urdf/arm.urdf.xacro")
     path = tmp_path_factory.mktemp("simulation") / "parameters.yaml"
     settings = {"robot_description": expand_xacro(str(arm), {})}

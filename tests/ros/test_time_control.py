@@ -1,7 +1,14 @@
 """The pace of a simulation changes while it runs, and steps are answered when all is published."""
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.srv import SelfTest
+from sensor_msgs.msg import Image, JointState
 from simulated import PAUSED, PLAYING, Simulated
+from std_msgs.msg import Float64MultiArray
+
+from arm_description.resources import resolve_uri
+from arm_description.xacro.expansion import expand_xacro
 
 START_TIMEOUT_S = 120.0
 PERIOD_S = 0.01
@@ -22,9 +29,6 @@ def ticks(messages: list) -> list[int]:
 @pytest.fixture(scope="module")
 def simulation(simulate):
     """Run the simulation of the arm with its camera, paused."""
-    from arm_description.resources import resolve_uri
-    from arm_description.xacro.expansion import expand_xacro
-
     arm = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
     description = expand_xacro(arm, {}).replace("<update_rate>30", f"<update_rate>{RATE_HZ:g}")
     assert f"<update_rate>{RATE_HZ:g}" in description
@@ -54,8 +58,6 @@ class Simulator(Simulated):
         self.do("StepSimulation", service, steps=steps)
 
     def figures(self) -> dict[str, dict[str, str]]:
-        from diagnostic_msgs.srv import SelfTest
-
         answer = self.client.call(SelfTest, "/simulation/get_statistics", SelfTest.Request())
         assert answer.passed == b"\x01", answer
         return {
@@ -94,8 +96,6 @@ def subscribed(simulator, client):
 
 
 def test_a_step_is_answered_when_its_states_are_out(simulator, subscribed):
-    from sensor_msgs.msg import JointState
-
     states, last = subscribed(JointState, "/joint_states")
     states.wait_until(lambda m: ticks(m)[-1] == last, "the states so far")
     states.clear()
@@ -106,8 +106,6 @@ def test_a_step_is_answered_when_its_states_are_out(simulator, subscribed):
 
 
 def test_steps_with_sensors_take_every_picture(simulator, subscribed):
-    from sensor_msgs.msg import Image
-
     pictures, last = subscribed(Image, "/videocamera")
     pictures.wait_until(lambda m: ticks(m)[-1] == last - last % 4, "the pictures so far")
     pictures.clear()
@@ -121,8 +119,6 @@ def test_steps_with_sensors_take_every_picture(simulator, subscribed):
 
 
 def test_a_change_of_the_speed_loses_no_tick_and_no_message(simulator, client, subscribed):
-    from sensor_msgs.msg import JointState
-
     states, _ = subscribed(JointState, "/joint_states")
     states.clear()
     simulator.go_to(PLAYING)
@@ -152,8 +148,6 @@ def test_a_speed_that_is_none_is_refused(simulator, value, reason):
 
 
 def test_statistics_come_once_a_second(simulator, client):
-    from diagnostic_msgs.msg import DiagnosticArray
-
     reports = client.subscribe(DiagnosticArray, "/simulation/statistics")
     simulator.go_to(PLAYING)
     reports.clear()
@@ -170,9 +164,6 @@ def test_statistics_come_once_a_second(simulator, client):
 
 
 def test_a_joint_stops_when_its_commands_cease(simulator, client):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
     commands = client.publisher(Float64MultiArray, "/turner/commands")
     states = client.subscribe(JointState, "/joint_states", DEPTH)
     assert simulator.set(real_time_factor=2.0) == ""

@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 
 import pytest
+from rcl_interfaces.srv import ListParameters
 from robots import crate
 from simulated import Simulated
 
@@ -18,8 +19,6 @@ class World(Simulated):
     """The simulation with the parameters of its world."""
 
     def names(self) -> set[str]:
-        from rcl_interfaces.srv import ListParameters
-
         request = ListParameters.Request(prefixes=["gravity", "entities"])
         answer = self.client.call(ListParameters, "/simulation/list_parameters", request)
         return set(answer.result.names)

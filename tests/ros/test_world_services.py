@@ -4,8 +4,17 @@ import re
 
 import numpy as np
 import pytest
+from rcl_interfaces.srv import ListParameters
+from rclpy.qos import QoSProfile
 from robots import crate
+from sensor_msgs.msg import Image, JointState
 from simulated import OK, PAUSED, PLAYING, Simulated
+from simulation_interfaces.msg import EntityFilters, EntityState, Resource
+from simulation_interfaces.srv import GetEntities
+from visualization_msgs.msg import Marker, MarkerArray
+
+from arm_description.resources import resolve_uri
+from arm_description.xacro.expansion import expand_xacro
 
 CRATE = crate(size=0.2)
 WALL = """<sdf version="1.9"><model name="wall"><static>true</static><link name="l">
@@ -25,9 +34,6 @@ START_TIMEOUT_S = 120.0
 @pytest.fixture(scope="module")
 def arm(simulate):
     """Run the simulation of the arm with its camera, its forearm held up."""
-    from arm_description.resources import resolve_uri
-    from arm_description.xacro.expansion import expand_xacro
-
     xacro = str(resolve_uri("package://arm_description/urdf/arm.urdf.xacro"))
     pose = {"j1_pos": "0.5", "j2_pos": "0.5"}
     settings = {"robot_description": expand_xacro(xacro, pose), "spawn": SPAWNED}
@@ -40,8 +46,6 @@ def simulator(arm, client) -> Simulated:
 
 
 def test_the_arm_holds_while_entities_are_spawned_moved_and_deleted(simulator, client):
-    from sensor_msgs.msg import JointState
-
     states = client.subscribe(JointState, "/joint_states")
     states.wait_for(10, START_TIMEOUT_S)
     start_s = stamp_s(states.messages[-1])
@@ -58,15 +62,11 @@ def test_the_arm_holds_while_entities_are_spawned_moved_and_deleted(simulator, c
 
 @pytest.mark.parametrize("node", ["simulation", "arm_gazebo", "controller_manager"])
 def test_every_node_has_parameters(arm, client, node):
-    from rcl_interfaces.srv import ListParameters
-
     answer = client.call(ListParameters, f"/{node}/list_parameters", ListParameters.Request())
     assert "use_sim_time" in answer.result.names
 
 
 def test_the_camera_sees_a_spawned_entity(simulator, client):
-    from sensor_msgs.msg import Image
-
     def red(message: Image) -> float:
         pixels = np.frombuffer(message.data, np.uint8).reshape(-1, 3).astype(int)
         return float(np.mean((pixels[:, 0] > 80) & (pixels[:, 1:].max(axis=1) < 60)))
@@ -82,8 +82,6 @@ def test_the_camera_sees_a_spawned_entity(simulator, client):
 
 
 def test_markers_show_the_world(simulator, client, latched):
-    from visualization_msgs.msg import Marker, MarkerArray
-
     arrays = client.subscribe(MarkerArray, "/world_markers", latched)
 
     def of(owner: str, messages: list) -> list[Marker]:
@@ -108,8 +106,6 @@ def test_markers_show_the_world(simulator, client, latched):
 
 
 def test_contacts_are_markers_while_somebody_subscribes(simulator, client, latched):
-    from visualization_msgs.msg import Marker, MarkerArray
-
     arrays = client.subscribe(MarkerArray, "/contact_markers", latched)
 
     def lines(messages: list) -> list[str]:
@@ -148,9 +144,6 @@ def test_time_stops_and_advances_by_steps(simulator, client):
 
 
 def test_forty_requests_at_once_are_all_answered(simulator, client):
-    from rclpy.qos import QoSProfile
-    from simulation_interfaces.srv import GetEntities
-
     # With the usual ten, the client itself loses answers.
     deep = QoSProfile(depth=100)
     service = client.node.create_client(GetEntities, "/get_entities", qos_profile=deep)
@@ -175,9 +168,6 @@ def test_a_long_run_of_steps_can_be_cancelled(simulator, client):
 
 
 def test_the_arm_continues_in_another_world(simulator, client):
-    from sensor_msgs.msg import JointState
-    from simulation_interfaces.msg import Resource
-
     assert simulator.do("LoadWorld", world_resource=Resource(uri="shapes")).world.name == "shapes"
     assert "cone" in simulator.do("GetEntities").entities
     simulator.go_to(PLAYING)
@@ -188,8 +178,6 @@ def test_the_arm_continues_in_another_world(simulator, client):
 
 
 def test_invalid_requests_are_refused_with_a_sentence(simulator):
-    from simulation_interfaces.msg import EntityFilters, EntityState, Resource
-
     for service, fields in (
         ("SpawnEntity", {"name": "a", "entity_resource": Resource(resource_string="<a")}),
         ("SpawnEntity", {"name": "a b", "entity_resource": Resource(resource_string=CRATE)}),
@@ -208,8 +196,6 @@ def test_invalid_requests_are_refused_with_a_sentence(simulator):
 
 def nowhere():
     """Return a state whose pose is not a number."""
-    from simulation_interfaces.msg import EntityState
-
     state = EntityState()
     state.pose.position.x = float("nan")
     return state

@@ -5,6 +5,9 @@ import signal
 import threading
 
 import pytest
+from control_msgs.action import GripperCommand
+from rclpy.action.server import ActionServer, CancelResponse, GoalResponse
+from rclpy.task import Future
 from sensor_msgs.msg import JointState
 
 pytestmark = pytest.mark.usefixtures("simulation")
@@ -168,10 +171,6 @@ def _a_goal_is_cancelled_by_ctrl_c(start):
 @pytest.fixture
 def slow_server(client):
     """Offer an action that accepts late; return the event that lets it, and its goals."""
-    from control_msgs.action import GripperCommand
-    from rclpy.action.server import ActionServer, CancelResponse, GoalResponse
-    from rclpy.task import Future
-
     told, may_answer, ended = [], threading.Event(), Future()
 
     def take(_):

@@ -8,7 +8,10 @@ import pytest
 from control_msgs.action import GripperCommand
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from arm_cli.main import main
@@ -55,8 +58,6 @@ def test_a_missing_service(arm):
 @pytest.mark.usefixtures("notices_come_at_once")
 def test_a_service_that_does_not_answer(arm, client):
     # Nobody spins this node, which shares the client's context.
-    from rclpy.node import Node
-
     silent = Node("silent", context=client.context)
     silent.create_service(Trigger, "/silent", lambda _, response: response)
     try:
@@ -85,9 +86,6 @@ def test_a_type_that_no_publisher_of_the_topic_has(arm, client):
 
 @pytest.mark.usefixtures("notices_come_late")
 def test_messages_that_a_filter_refuses_are_not_silence(arm, client):
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-    from std_msgs.msg import String
-
     kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     publisher = client.node.create_publisher(String, "/words", kept)
     publisher.publish(String(data="no"))

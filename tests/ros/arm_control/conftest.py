@@ -11,7 +11,10 @@ from typing import Any
 
 import pytest
 import yaml
+from builtin_interfaces.msg import Duration
 from programs import Program, RosProgram
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
 
 from launch_py.system.dds_profile import shipped_profile
 
@@ -183,8 +186,6 @@ class Control:
         strictness: int = 2,
         timeout_s: int = 30,
     ) -> Any:
-        from builtin_interfaces.msg import Duration
-
         return self.call(
             "switch_controller",
             activate_controllers=list(activate),
@@ -261,8 +262,6 @@ def get_parameter(client: Any) -> Callable[[str, str], Any]:
 @pytest.fixture
 def set_parameter(client: Any) -> Callable[..., Any]:
     """Return a function that sets a parameter of a node and returns the result."""
-    from rcl_interfaces.srv import SetParameters
-    from rclpy.parameter import Parameter
 
     def set_(node: str, name: str, value: Any) -> Any:
         kind = Parameter.Type.STRING_ARRAY if value == [] else None

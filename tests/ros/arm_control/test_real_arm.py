@@ -4,6 +4,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray
+from lifecycle_msgs.msg import State
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
 
 from arm_sim.bench.feetech_servos import FeetechServos
 from arm_sim.bench.serial_device import EmulatedPort
@@ -19,11 +23,6 @@ def port(tmp_path) -> Iterator[EmulatedPort]:
 
 
 def test_it_moves_and_is_taken_up_again_after_its_plug_was_pulled(port, run, client, control_of):
-    from diagnostic_msgs.msg import DiagnosticArray
-    from lifecycle_msgs.msg import State
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
     launched = run(
         *("-m", "arm_cli", "launch", "arm_gazebo", "arm_gazebo.launch.py"),
         *("hardware:=feetech", f"port:={port.path}", "controller_node:=false"),

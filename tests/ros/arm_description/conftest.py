@@ -10,6 +10,8 @@ from typing import Any
 import pytest
 import yaml
 from programs import Program, RosProgram
+from sensor_msgs.msg import JointState
+from tf2_msgs.msg import TFMessage
 
 LIMIT = "<limit lower='-3' upper='3' effort='1' velocity='1'/>"
 URDF = f"""<robot name='r'>
@@ -63,8 +65,6 @@ def set_parameters(client) -> Callable[..., str]:
 @pytest.fixture
 def send(client) -> Callable[..., None]:
     """Publish a joint state: stamp in seconds, positions by name."""
-    from sensor_msgs.msg import JointState
-
     publishers = []
 
     def send_one(stamp_s: float, positions: Any = None, **by_name: float) -> None:
@@ -85,7 +85,6 @@ def send(client) -> Callable[..., None]:
 @pytest.fixture
 def tf(client, start, urdf):
     """Start the node and return a function that collects /tf, matched."""
-    from tf2_msgs.msg import TFMessage
 
     def collect(**parameters):
         node = start("robot_state_publisher_node", robot_description=urdf, **parameters)

@@ -4,6 +4,11 @@ import math
 import threading
 
 import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from std_msgs.msg import String
 
 from arm_description.publishers.ros_robot_state_publisher import spinning
 from arm_node import executor_thread
@@ -11,11 +16,6 @@ from arm_node import executor_thread
 
 @pytest.fixture
 def node():
-    import rclpy
-    from rclpy.context import Context
-    from rclpy.node import Node
-    from rclpy.signals import SignalHandlerOptions
-
     context = Context()
     rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
     yield Node("events", context=context)
@@ -23,8 +23,6 @@ def node():
 
 
 def test_a_callback_that_raises_is_logged_and_the_next_runs(client, node, caplog):
-    from std_msgs.msg import String
-
     texts: list[str] = []
     arrived = threading.Event()
 

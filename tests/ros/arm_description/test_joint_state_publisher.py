@@ -3,6 +3,9 @@
 import signal
 
 import pytest
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
 
 NODE = "joint_state_publisher"
 MODULE = "joint_state_publisher_node"
@@ -18,16 +21,12 @@ def urdf_file(tmp_path, urdf) -> str:
 @pytest.fixture
 def states(client):
     """Return the joint states that arrive from now on."""
-    from sensor_msgs.msg import JointState
-
     return client.subscribe(JointState, "joint_states")
 
 
 @pytest.fixture
 def describe(client, latched):
     """Publish a latched robot_description."""
-    from std_msgs.msg import String
-
     publisher = client.node.create_publisher(String, "robot_description", latched)
     return lambda text: publisher.publish(String(data=text))
 
@@ -84,8 +83,6 @@ def test_the_parameters_say_what_is_published(start, states, urdf_file):
 def test_a_source_that_makes_no_sense_is_named_and_the_node_goes_on(
     client, start, states, urdf_file
 ):
-    from sensor_msgs.msg import JointState
-
     node = start(MODULE, urdf_file, source_list=["left"])
     publisher = client.publisher(JointState, "left")
     publisher.publish(JointState(name=["turn"], position=[0.5, 2.0]))
@@ -98,8 +95,6 @@ def test_a_source_that_makes_no_sense_is_named_and_the_node_goes_on(
 def test_stamps_are_the_nodes_time_and_without_a_clock_nothing_is_published(
     client, start, states, urdf_file
 ):
-    from rosgraph_msgs.msg import Clock
-
     start(MODULE, urdf_file, use_sim_time=True)
     clock = client.publisher(Clock, "/clock")
     message = Clock()

@@ -4,6 +4,12 @@ import math
 import signal
 
 import pytest
+from rcl_interfaces.srv import GetParameters, ListParameters
+from rclpy.parameter import parameter_value_to_python
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+from tf2_msgs.msg import TFMessage
 
 NODE = "robot_state_publisher"
 MODULE = "robot_state_publisher_node"
@@ -32,9 +38,6 @@ def children(message) -> set[str]:
 def test_late_subscribers_get_the_description_and_fixed_and_planar_joints(
     client, start, urdf, latched
 ):
-    from std_msgs.msg import String
-    from tf2_msgs.msg import TFMessage
-
     start(MODULE, robot_description=urdf)
     first = client.subscribe(String, "robot_description", latched).wait_for()
     late = client.subscribe(String, "robot_description", latched).wait_for()
@@ -66,8 +69,6 @@ def test_a_follower_that_the_message_names_has_its_own_position(tf, send):
 
 
 def test_the_frame_prefix_stands_before_every_frame(client, tf, send, latched):
-    from tf2_msgs.msg import TFMessage
-
     _, collector = tf(frame_prefix="left/")
     send(1.0, turn=0.0)
     assert transforms(collector.wait_for()[0]).keys() == {("left/base", "left/arm")}
@@ -76,10 +77,6 @@ def test_the_frame_prefix_stands_before_every_frame(client, tf, send, latched):
 
 
 def test_one_process_has_a_node_in_each_namespace(client, start, urdf, latched):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import String
-    from tf2_msgs.msg import TFMessage
-
     start(MODULE, "--namespaces", "left", "right", robot_description=urdf)
     for namespace in ("left", "right"):
         topic = f"/{namespace}/robot_description"
@@ -96,8 +93,6 @@ def test_one_process_has_a_node_in_each_namespace(client, start, urdf, latched):
 
 
 def test_another_frame_prefix_takes_effect_at_once(client, tf, send, latched, set_parameters):
-    from tf2_msgs.msg import TFMessage
-
     _, collector = tf()
     static = client.subscribe(TFMessage, "/tf_static", latched)
     static.wait_for()
@@ -115,9 +110,6 @@ OTHER = """<robot name='other'><link name='base'/><link name='hand'/><link name=
 def test_another_description_takes_the_place_of_the_first(
     client, tf, send, latched, set_parameters
 ):
-    from std_msgs.msg import String
-    from tf2_msgs.msg import TFMessage
-
     _, collector = tf()
     descriptions = client.subscribe(String, "robot_description", latched)
     descriptions.wait_for()
@@ -185,8 +177,6 @@ def test_bytes_that_are_no_joint_state_are_ignored(tf, send):
 
 
 def test_the_topics_have_upstreams_quality_of_service(client, tf):
-    from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
-
     tf()
 
     def policies(infos) -> set:
@@ -212,9 +202,6 @@ def test_the_topics_have_upstreams_quality_of_service(client, tf):
 
 
 def test_the_parameters_are_upstreams(client, tf):
-    from rcl_interfaces.srv import GetParameters, ListParameters
-    from rclpy.parameter import parameter_value_to_python
-
     tf()
     names = client.call(ListParameters, f"/{NODE}/list_parameters", ListParameters.Request())
     expected = {
@@ -239,8 +226,6 @@ def test_the_parameters_are_upstreams(client, tf):
 
 
 def test_the_quality_of_service_may_be_overridden(client, start, urdf):
-    from rclpy.qos import ReliabilityPolicy
-
     topics = {"/joint_states": {"subscription": {"reliability": "reliable"}}}
     start(MODULE, robot_description=urdf, qos_overrides=topics)
 
@@ -294,8 +279,6 @@ FALLBACK = "No robot_description parameter, but command-line argument available.
 def test_a_urdf_file_as_argument_takes_the_place_of_the_parameter(
     client, start, urdf, latched, tmp_path
 ):
-    from std_msgs.msg import String
-
     file = tmp_path / "robot.urdf"
     file.write_text(urdf)
     node = start(MODULE, str(file))

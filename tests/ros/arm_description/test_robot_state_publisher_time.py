@@ -1,6 +1,7 @@
 """robot_state_publisher and time: its throttle, stamps of no time, and time that is set back."""
 
 import pytest
+from tf2_msgs.msg import TFMessage
 
 NODE = "robot_state_publisher"
 
@@ -39,8 +40,6 @@ def test_a_frequency_out_of_range_is_refused(tf, set_parameters):
 
 
 def test_time_that_is_set_back_starts_again(client, tf, send, latched, set_parameters):
-    from tf2_msgs.msg import TFMessage
-
     node, collector = tf(use_sim_time=True)
     static = client.subscribe(TFMessage, "/tf_static", latched)
 

@@ -4,6 +4,7 @@ import math
 import re
 
 import pytest
+from tf2_msgs.msg import TFMessage
 
 from arm_description.errors import SettingsError
 from arm_description.static_transform_publisher_node import parameters_of, unit_quaternion
@@ -15,7 +16,6 @@ HALF = math.sqrt(0.5)
 @pytest.fixture
 def received(client, start, latched):
     """Start the program with arguments and parameters; return the transform that comes late."""
-    from tf2_msgs.msg import TFMessage
 
     def run(*arguments: str, **parameters):
         node = start(MODULE, *arguments, **parameters)

@@ -5,7 +5,22 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import pytest
+from geometry_msgs.msg import Pose
+from moveit_msgs.action import MoveGroup
+from moveit_msgs.msg import (
+    AttachedCollisionObject,
+    CollisionObject,
+    Constraints,
+    JointConstraint,
+    MotionPlanRequest,
+    PlanningScene,
+    PositionConstraint,
+)
+from moveit_msgs.srv import ApplyPlanningScene, GetMotionPlan, GetPlanningScene, GetStateValidity
 from programs import Program
+from rclpy.action import ActionClient
+from sensor_msgs.msg import JointState
+from shape_msgs.msg import SolidPrimitive
 
 ARM_JOINTS = (
     "link1_to_link2",
@@ -40,9 +55,6 @@ class Planning:
     """What a program that uses move_group does, in plain rclpy."""
 
     def __init__(self, client: Any) -> None:
-        from rclpy.action import ActionClient
-        from sensor_msgs.msg import JointState
-
         self.client = client
         self._action_type = ActionClient
         self._actions: dict[str, Any] = {}
@@ -108,15 +120,11 @@ class Planning:
 
     def plan(self, request: Any) -> Any:
         """Return the answer to a request to plan."""
-        from moveit_msgs.srv import GetMotionPlan
-
         asked = GetMotionPlan.Request(motion_plan_request=request)
         return self.call("/plan_kinematic_path", asked).motion_plan_response
 
     def start_move(self, request: Any, **options: Any) -> Goal:
         """Send a request to move_action as MoveGroupInterface does."""
-        from moveit_msgs.action import MoveGroup
-
         goal = MoveGroup.Goal(request=request)
         goal.planning_options.planning_scene_diff.is_diff = True
         goal.planning_options.planning_scene_diff.robot_state.is_diff = True
@@ -130,20 +138,14 @@ class Planning:
 
     def scene(self) -> Any:
         """Return the whole scene."""
-        from moveit_msgs.srv import GetPlanningScene
-
         return self.call("/get_planning_scene", GetPlanningScene.Request()).scene
 
     def apply(self, scene: Any) -> bool:
         """Change the scene; return whether all was possible."""
-        from moveit_msgs.srv import ApplyPlanningScene
-
         return self.call("/apply_planning_scene", ApplyPlanningScene.Request(scene=scene)).success
 
     def apply_object(self, thing: Any) -> bool:
         """Change one object of the scene; return whether it was possible."""
-        from moveit_msgs.msg import PlanningScene
-
         scene = PlanningScene(is_diff=True)
         scene.robot_state.is_diff = True
         scene.world.collision_objects = [thing]
@@ -157,8 +159,6 @@ class Planning:
 
     def is_free(self, positions: Mapping[str, float]) -> bool:
         """Return whether the arm touches nothing at these positions."""
-        from moveit_msgs.srv import GetStateValidity
-
         request = GetStateValidity.Request(group_name="arm")
         request.robot_state.is_diff = True
         state = request.robot_state.joint_state
@@ -212,8 +212,6 @@ def planning(planning_for_file: Planning) -> Iterator[Planning]:
 
 def clear(planning: Planning) -> None:
     """Remove all objects, attached ones first: they come back into the world."""
-    from moveit_msgs.msg import AttachedCollisionObject, CollisionObject, PlanningScene
-
     scene = PlanningScene(is_diff=True)
     scene.robot_state.is_diff = True
     attached = AttachedCollisionObject()
@@ -240,7 +238,6 @@ def joints() -> Callable[..., dict[str, float]]:
 @pytest.fixture(scope="session")
 def request_of() -> Callable[..., Any]:
     """Return a function that makes a request to plan for the arm, from where it is or a start."""
-    from moveit_msgs.msg import Constraints, MotionPlanRequest
 
     def make(
         *goals: Constraints, start: Mapping[str, float] | None = None, **fields: Any
@@ -259,7 +256,6 @@ def request_of() -> Callable[..., Any]:
 @pytest.fixture(scope="session")
 def joint_goal() -> Callable[[Mapping[str, float]], Any]:
     """Return a function that makes a goal of joints, as MoveGroupInterface writes it."""
-    from moveit_msgs.msg import Constraints, JointConstraint
 
     def make(positions: Mapping[str, float]) -> Constraints:
         return Constraints(
@@ -281,9 +277,6 @@ def joint_goal() -> Callable[[Mapping[str, float]], Any]:
 @pytest.fixture(scope="session")
 def position_goal() -> Callable[..., Any]:
     """Return a function that makes the goal that a link is at a place, as pymoveit2 writes it."""
-    from geometry_msgs.msg import Pose
-    from moveit_msgs.msg import Constraints, PositionConstraint
-    from shape_msgs.msg import SolidPrimitive
 
     def make(x: float, y: float, z: float, link: str = "link6_flange", frame: str = "base_link"):
         constraint = PositionConstraint(link_name=link, weight=1.0)
@@ -301,9 +294,6 @@ def position_goal() -> Callable[..., Any]:
 @pytest.fixture(scope="session")
 def box() -> Callable[..., Any]:
     """Return a function that makes a box as an object of the scene; its centre is in the world."""
-    from geometry_msgs.msg import Pose
-    from moveit_msgs.msg import CollisionObject
-    from shape_msgs.msg import SolidPrimitive
 
     def make(name: str, centre: Sequence[float], size: Sequence[float], frame: str = "world"):
         thing = CollisionObject(id=name, operation=CollisionObject.ADD)

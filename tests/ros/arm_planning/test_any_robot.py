@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from programs import RosProgram
 from robots import box, joint, link, robot
+from sensor_msgs.msg import JointState
 
 
 @pytest.fixture
@@ -26,8 +27,6 @@ def urdf(tmp_path) -> Path:
 
 
 def test_arm_move_plans_and_moves_it(launch, client, urdf):
-    from sensor_msgs.msg import JointState
-
     launch(str(urdf), "planning:=true").wait_until_ready()
     states = client.subscribe(JointState, "/joint_states")
     words = [sys.executable, "-m", "arm_cli", "move", "--joints", "j1=0.4", "j2=-0.3"]
@@ -47,8 +46,6 @@ def test_arm_move_plans_and_moves_it(launch, client, urdf):
 def test_arm_move_finds_the_robot_in_its_namespace_and_ends_with_its_move_group(
     launch, client, urdf
 ):
-    from sensor_msgs.msg import JointState
-
     launched = launch(str(urdf), "planning:=true", "namespace:=left")
     launched.wait_until_ready()
     states = client.subscribe(JointState, "/left/joint_states")

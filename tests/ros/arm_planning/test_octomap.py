@@ -2,6 +2,12 @@
 
 import numpy as np
 import pytest
+from moveit_msgs.msg import CollisionObject
+from moveit_msgs.srv import GetStateValidity
+from shape_msgs.msg import SolidPrimitive
+from std_srvs.srv import Empty
+
+from arm_planning.scene.octree import decoded
 
 PLACE, RADIUS_M, HEIGHT_M = (0.22, 0.12), 0.0125, 0.35
 """Of the red cylinder."""
@@ -18,8 +24,6 @@ def launched(launch_for_file):
 
 def centres(planning):
     """Return the middles of the occupied cubes, and their edge."""
-    from arm_planning.scene.octree import decoded
-
     octomap = planning.scene().world.octomap
     if not octomap.octomap.id:
         return np.empty((0, 3)), 0.0
@@ -53,8 +57,6 @@ def test_the_cylinder_and_the_floor_are_in_the_map_and_the_robot_is_not(planning
 
 
 def test_the_robot_must_not_touch_it(planning, request_of, joint_goal, joints):
-    from moveit_msgs.srv import GetStateValidity
-
     eventually(planning, lambda: len(of_cylinder(planning)) > 10, "the cylinder is in the map")
     request = GetStateValidity.Request(group_name="arm")
     request.robot_state.is_diff = True
@@ -67,9 +69,6 @@ def test_the_robot_must_not_touch_it(planning, request_of, joint_goal, joints):
 
 
 def test_what_is_known_as_an_object_is_cut_out_and_comes_back(planning):
-    from moveit_msgs.msg import CollisionObject
-    from shape_msgs.msg import SolidPrimitive
-
     eventually(planning, lambda: len(of_cylinder(planning)) > 10, "the cylinder is in the map")
     thing = CollisionObject(id="cylinder", operation=CollisionObject.ADD)
     thing.header.frame_id = "world"
@@ -85,8 +84,6 @@ def test_what_is_known_as_an_object_is_cut_out_and_comes_back(planning):
 
 
 def test_a_cleared_map_is_made_again(planning):
-    from std_srvs.srv import Empty
-
     eventually(planning, lambda: len(of_cylinder(planning)) > 10, "the cylinder is in the map")
     planning.client.call(Empty, "/clear_octomap", Empty.Request())
     eventually(planning, lambda: len(of_cylinder(planning)) > 10, "the cylinder is back")

@@ -6,7 +6,16 @@ import threading
 from types import SimpleNamespace
 
 import pytest
+from moveit_msgs.action import ExecuteTrajectory
+from moveit_msgs.msg import CollisionObject
+from moveit_msgs.srv import GetPositionFK
 from programs import Program
+from rclpy.node import Node
+from shape_msgs.msg import SolidPrimitive
+from trajectory_msgs.msg import JointTrajectoryPoint
+
+from arm_planning.mtc_demo_node import CONFIGURATION
+from arm_planning.ros.task_robot import TaskRobot
 
 TIMEOUT_S = 100.0
 
@@ -61,8 +70,6 @@ def test_plan_around_objects_adds_a_box_and_then_says_that_one_is_in_the_way(pla
 
 def tip(planning):
     """Where the gripper's base is."""
-    from moveit_msgs.srv import GetPositionFK
-
     request = GetPositionFK.Request(fk_link_names=["gripper_base"])
     request.robot_state = planning.scene().robot_state
     return planning.call("/compute_fk", request).pose_stamped[0].pose
@@ -87,11 +94,6 @@ def test_a_task_is_planned_and_executed_and_one_without_a_solution_says_why(plan
 def test_a_task_destroys_nothing_while_the_executor_may_collect_what_to_wait_for(
     planning, monkeypatch
 ):
-    from rclpy.node import Node
-
-    from arm_planning.mtc_demo_node import CONFIGURATION
-    from arm_planning.ros.task_robot import TaskRobot
-
     client, threads = planning.client, []
     destroy = Node.destroy_subscription
 
@@ -107,9 +109,6 @@ def test_a_task_destroys_nothing_while_the_executor_may_collect_what_to_wait_for
 
 
 def test_a_gripper_moves_from_wherever_it_is(planning):
-    from moveit_msgs.action import ExecuteTrajectory
-    from trajectory_msgs.msg import JointTrajectoryPoint
-
     goal = ExecuteTrajectory.Goal()
     motion = goal.trajectory.joint_trajectory
     motion.joint_names = ["gripper_controller"]
@@ -125,9 +124,6 @@ def test_a_gripper_moves_from_wherever_it_is(planning):
 
 def box_at(pose):
     """A box of 5 cm."""
-    from moveit_msgs.msg import CollisionObject
-    from shape_msgs.msg import SolidPrimitive
-
     box = CollisionObject(id="blocker", operation=CollisionObject.ADD)
     box.header.frame_id = "world"
     box.primitives = [SolidPrimitive(type=SolidPrimitive.BOX, dimensions=[0.05, 0.05, 0.05])]

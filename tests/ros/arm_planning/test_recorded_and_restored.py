@@ -5,6 +5,8 @@ from contextlib import closing
 from typing import Any
 
 import pytest
+from moveit_msgs.msg import AttachedCollisionObject, CollisionObject, PlanningScene
+from moveit_msgs.srv import LoadGeometryFromFile, SaveGeometryToFile
 from programs import RosProgram
 from simulated import OK, Simulated
 
@@ -76,8 +78,6 @@ def is_at(planning: Any, name: str, place: list[float]) -> bool:
 
 
 def attach(planning: Any, name: str, *, detach: bool = False) -> None:
-    from moveit_msgs.msg import AttachedCollisionObject, CollisionObject, PlanningScene
-
     held = AttachedCollisionObject(link_name="gripper_base", touch_links=[WORLD])
     held.object.id = name
     held.object.operation = CollisionObject.REMOVE if detach else CollisionObject.ADD
@@ -200,8 +200,6 @@ def test_the_scene_with_the_things_of_the_world_goes_round(planning):
 
 
 def test_objects_from_a_file_join_the_things_of_the_world(planning, tmp_path):
-    from moveit_msgs.srv import LoadGeometryFromFile, SaveGeometryToFile
-
     path = str(tmp_path / "things.scene")
     saved = planning.call(
         "/save_geometry_to_file", SaveGeometryToFile.Request(file_path_and_name=path)

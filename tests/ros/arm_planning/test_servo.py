@@ -7,7 +7,14 @@ from contextlib import contextmanager
 from typing import Any
 
 import pytest
+from control_msgs.msg import JointJog
+from geometry_msgs.msg import TwistStamped
+from moveit_msgs.msg import ServoStatus
+from moveit_msgs.srv import GetPositionFK, ServoCommandType
 from programs import Program
+from sensor_msgs.msg import JointState, Joy
+from std_srvs.srv import SetBool
+from trajectory_msgs.msg import JointTrajectory
 
 INVALID, FINE, DECELERATE_FOR_COLLISION, HALT_FOR_COLLISION = -1, 0, 4, 5
 JOINT_JOG, TWIST = 0, 1
@@ -27,11 +34,6 @@ class JogClient:
     """A client of servo_node that holds keys down."""
 
     def __init__(self, planning: Any) -> None:
-        from control_msgs.msg import JointJog
-        from geometry_msgs.msg import TwistStamped
-        from moveit_msgs.msg import ServoStatus
-        from trajectory_msgs.msg import JointTrajectory
-
         client = planning.client
         self.planning, self.client = planning, client
         self.statuses = client.subscribe(ServoStatus, "/servo_node/status")
@@ -40,20 +42,14 @@ class JogClient:
         self.twists = client.publisher(TwistStamped, "/servo_node/delta_twist_cmds")
 
     def switch(self, kind: int) -> bool:
-        from moveit_msgs.srv import ServoCommandType
-
         request = ServoCommandType.Request(command_type=kind)
         name = "/servo_node/switch_command_type"
         return self.client.call(ServoCommandType, name, request).success
 
     def joint_jog(self, joint: str, speed: float) -> Any:
-        from control_msgs.msg import JointJog
-
         return JointJog(joint_names=[joint], velocities=[speed])
 
     def twist(self, z: float, frame: str = "") -> Any:
-        from geometry_msgs.msg import TwistStamped
-
         message = TwistStamped()
         message.header.frame_id, message.twist.linear.z = frame, z
         return message
@@ -61,8 +57,6 @@ class JogClient:
     @contextmanager
     def held(self, command: Any) -> Iterator[None]:
         """Send a command with each joint state, in whose time it is stamped."""
-        from sensor_msgs.msg import JointState
-
         publisher = self.joints if hasattr(command, "joint_names") else self.twists
 
         def send(state: JointState) -> None:
@@ -92,8 +86,6 @@ class JogClient:
 
     def tip(self) -> Any:
         """Return where the gripper is in the planning frame."""
-        from moveit_msgs.srv import GetPositionFK
-
         request = GetPositionFK.Request(fk_link_names=["gripper_base"])
         positions = self.planning.positions()
         request.robot_state.joint_state.name = list(positions)
@@ -184,8 +176,6 @@ def test_what_cannot_be_used_does_not_move_the_robot(jog):
 
 
 def test_a_paused_jog_drops_commands_until_it_goes_on(jog):
-    from std_srvs.srv import SetBool
-
     assert jog.switch(JOINT_JOG)
     before = jog.planning.stands_still()
     assert jog.client.call(
@@ -214,8 +204,6 @@ def teleop() -> Iterator[tuple[Program, Callable[[str], None]]]:
 
 
 def test_keys_jog_a_joint_and_space_stops_the_robot(jog):
-    from std_srvs.srv import SetBool
-
     before = jog.planning.stands_still()[BASE]
     with teleop() as (program, press):
 
@@ -238,8 +226,6 @@ def test_keys_jog_a_joint_and_space_stops_the_robot(jog):
 def test_a_gamepad_moves_the_tip_while_its_button_is_held(
     jog, planning, joint_goal, request_of, joints
 ):
-    from sensor_msgs.msg import Joy
-
     bent = joint_goal(joints(0.0, -0.5, 1.57, 0.6, 0.3))
     assert planning.move(request_of(bent)).result.error_code.val == 1
     before = jog.tip()

@@ -6,6 +6,8 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from controller_manager_msgs.srv import ListControllers
+from sensor_msgs.msg import Image, JointState
 
 from arm_gazebo.recording.replay import Replay
 from arm_gazebo.recording.run_file import RunFile
@@ -33,8 +35,6 @@ rclpy.spin(node)
 
 
 def test_commands_states_and_the_users_own_nodes(arm_ros):
-    from controller_manager_msgs.srv import ListControllers
-
     assert os.environ["ROS_DOMAIN_ID"] == str(arm_ros.domain_id)
     own = arm_ros.run(sys.executable, "-c", LISTENER)
     arm_ros.command(CONTROLLER, GOAL)
@@ -69,8 +69,6 @@ def test_faults_in_the_simulation(arm_ros):
 
 
 def test_faults_of_messages_and_processes(arm_ros):
-    from sensor_msgs.msg import Image, JointState
-
     def twice(messages) -> int:
         stamps = Counter((m.header.stamp.sec, m.header.stamp.nanosec) for m in messages)
         return list(stamps.values()).count(2)

@@ -12,8 +12,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from action_msgs.msg import GoalStatus
+from control_msgs.action import FollowJointTrajectory, GripperCommand
 from robots import MYCOBOT_ARM
+from sensor_msgs.msg import JointState
 from simulated import Simulated
+from std_msgs.msg import Float64MultiArray
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from arm_control.controllers.joint_trajectory.goals import GoalRequest
 from arm_gazebo.recording.comparison import compare
@@ -43,9 +48,6 @@ class User:
 
     def follow(self, position: float, seconds: int, cancel: bool = False) -> int:
         """Let the arm follow a trajectory; return the status of the goal."""
-        from control_msgs.action import FollowJointTrajectory
-        from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-
         point = JointTrajectoryPoint(positions=[position] * len(MYCOBOT_ARM))
         point.time_from_start.sec = seconds
         trajectory = JointTrajectory(joint_names=list(MYCOBOT_ARM), points=[point])
@@ -55,8 +57,6 @@ class User:
 
     def grip(self, position: float) -> int:
         """Move the gripper; return the status of the goal."""
-        from control_msgs.action import GripperCommand
-
         goal = GripperCommand.Goal()
         goal.command.position, goal.command.max_effort = position, 5.0
         return self._status_of(GripperCommand, f"/{GRIPPER}/gripper_cmd", goal)
@@ -82,8 +82,6 @@ class User:
 
 def mycobot_run(launch: Any, client: Any, recorded: Path) -> None:
     """Trajectories, a cancelled one among them, a grip, and a thing that falls beside the arm."""
-    from action_msgs.msg import GoalStatus
-
     robot = NAMED_ROBOTS["mycobot"]
     launched = launch(
         "arm_gazebo",
@@ -109,9 +107,6 @@ def mycobot_run(launch: Any, client: Any, recorded: Path) -> None:
 
 def arm_run(launch: Any, client: Any, recorded: Path) -> None:
     """Commands on a topic, and a controller that is loaded and takes over."""
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
     launched = launch("arm_gazebo", "sim.launch.py", f"record_run:={recorded}", *arm_arguments())
     launched.wait_until_ready()
     states = client.subscribe(JointState, "/joint_states")

@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import numpy as np
+from sensor_msgs.msg import JointState
 
 from arm_sim import Simulation
 
@@ -19,8 +20,6 @@ def arm_sim_verb(*words: str) -> str:
 
 
 def test_a_state_goes_from_the_library_to_the_node_and_back(launch, client, tmp_path):
-    from sensor_msgs.msg import JointState
-
     first, second = tmp_path / "library.snapshot", tmp_path / "node.snapshot"
     with Simulation("arm") as sim:
         sim["position_controller"].command(POSE)

@@ -4,6 +4,12 @@ import time
 from collections.abc import Callable
 
 import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+
+from arm_viewer.ros.viewer import Viewer
 
 TIMEOUT_S = 60.0
 
@@ -12,13 +18,6 @@ class SpunViewer:
     """The node, and the ways to wait with it."""
 
     def __init__(self, *parameters: str) -> None:
-        import rclpy
-        from rclpy.context import Context
-        from rclpy.executors import SingleThreadedExecutor
-        from rclpy.signals import SignalHandlerOptions
-
-        from arm_viewer.ros.viewer import Viewer
-
         self.context = Context()
         rclpy.init(
             args=["--ros-args", *(word for each in parameters for word in ("-p", each))],

@@ -2,6 +2,10 @@
 
 import math
 
+from visualization_msgs.msg import MarkerArray
+
+from arm_viewer.ros import contact_observer
+
 
 class FakeTopics:
     """One topic, its next message, and the time before which what it brought is outdated."""
@@ -24,10 +28,6 @@ class FakeTopics:
 
 
 def test_contacts_stay_until_their_publisher_has_gone(monkeypatch):
-    from visualization_msgs.msg import MarkerArray
-
-    from arm_viewer.ros import contact_observer
-
     topics = FakeTopics()
     monkeypatch.setattr(contact_observer, "TopicGroup", lambda *_: topics)
     observer = contact_observer.ContactObserver(None, None)

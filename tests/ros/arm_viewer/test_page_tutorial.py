@@ -6,6 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from arm_viewer.planning import Activity, named_poses
+from arm_viewer.recordings.player import Player
+from arm_viewer.recordings.recorder import Recorder
+from arm_viewer.requests import DragTip, PlanMotion, SetGoal
+from arm_viewer.ros.recorded_state import RecordedState
+from arm_viewer.world.shape_fields import read_pose
+
 pytestmark = pytest.mark.timeout(600)
 
 PAGE = Path(__file__).parents[3] / "docs/tutorials/page.md"
@@ -24,10 +31,6 @@ def page(launch, new_viewer):
 
 def do(page, group: str, place: str, turned: str) -> None:
     """Set the goal of a row, and move there."""
-    from arm_viewer.planning import Activity, named_poses
-    from arm_viewer.requests import DragTip, PlanMotion, SetGoal
-    from arm_viewer.world.shape_fields import read_pose
-
     before = page.node.latest().planning[""]
     if turned:
         page.node.send(DragTip("", group, read_pose(place, turned), avoids=True))
@@ -41,10 +44,6 @@ def do(page, group: str, place: str, turned: str) -> None:
 
 
 def test_a_stranger_picks_the_cylinder_and_replays_it(page, tmp_path):
-    from arm_viewer.recordings.player import Player
-    from arm_viewer.recordings.recorder import Recorder
-    from arm_viewer.ros.recorded_state import RecordedState
-
     node, recorder = page.node, Recorder(tmp_path)
     rows = ROW.findall(PAGE.read_text())
     assert len(rows) == 5

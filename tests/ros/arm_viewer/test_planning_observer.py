@@ -3,6 +3,18 @@
 from functools import partial
 
 import pytest
+from geometry_msgs.msg import PoseStamped
+from moveit_msgs.action import ExecuteTrajectory, MoveGroup
+from moveit_msgs.msg import ContactInformation, ServoStatus
+from moveit_msgs.srv import GetPositionIK, GetStateValidity, ServoCommandType
+from rcl_interfaces.msg import ParameterType, ParameterValue
+from rcl_interfaces.srv import GetParameters
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
+
+from arm_node.rigid_transform import RigidTransform
+from arm_viewer.requests import DragTip, ExecutePlan, JogTip, PlanMotion, SetGoal
 
 URDF = """<robot name='r'><link name='base'/><link name='arm'/>
   <joint name='turn' type='revolute'><parent link='base'/><child link='arm'/>
@@ -16,9 +28,6 @@ class FakeMoveGroup:
     """Serves as much of a move_group as a test wants, on a node that one may leave unspun."""
 
     def __init__(self, node, name) -> None:
-        from rclpy.qos import DurabilityPolicy, QoSProfile
-        from std_msgs.msg import String
-
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._node = node
         self._name = name
@@ -66,8 +75,6 @@ def solve(request, answer):
 
 
 def touch(_, answer):
-    from moveit_msgs.msg import ContactInformation
-
     contact = ContactInformation(contact_body_1="arm", contact_body_2="box1", body_type_2=1)
     contact.depth = 0.003
     answer.contacts = [contact]
@@ -78,11 +85,6 @@ class FakeServo:
     """Takes poses once it is told to, as servo_node does."""
 
     def __init__(self, client) -> None:
-        from geometry_msgs.msg import PoseStamped
-        from moveit_msgs.msg import ServoStatus
-        from moveit_msgs.srv import ServoCommandType
-        from rcl_interfaces.srv import GetParameters
-
         self.client, self.kinds = client, []
         self.targets = client.subscribe(PoseStamped, f"{NAME}/servo_node/pose_target_cmds")
         self.status = client.node.create_publisher(ServoStatus, f"{NAME}/servo_node/status", 10)
@@ -100,8 +102,6 @@ class FakeServo:
         return answer
 
     def _answer_group(self, request, answer):
-        from rcl_interfaces.msg import ParameterType, ParameterValue
-
         assert request.names == ["moveit_servo.move_group_name"]
         text = ParameterValue(type=ParameterType.PARAMETER_STRING, string_value="all")
         answer.values = [text]
@@ -114,9 +114,6 @@ class FakeServo:
 
 @pytest.fixture(scope="module")
 def move_group(client_for_file, viewer):
-    from moveit_msgs.action import ExecuteTrajectory, MoveGroup
-    from moveit_msgs.srv import GetPositionIK, GetStateValidity
-
     fake = FakeMoveGroup(client_for_file.node, NAME)
     fake.serve_action(MoveGroup, "move_action", refuse_plan)
     fake.serve_action(ExecuteTrajectory, "execute_trajectory", lambda _, answer: answer)
@@ -138,14 +135,10 @@ def ask(viewer):
 
 
 def chosen(name=NAME):
-    from arm_viewer.requests import SetGoal
-
     return SetGoal(name, "all", {"turn": 0.5})
 
 
 def planned(name=NAME):
-    from arm_viewer.requests import PlanMotion
-
     return PlanMotion(name, 1.0, 1.0, executes=False)
 
 
@@ -155,8 +148,6 @@ def test_groups_and_named_poses_come_from_the_semantic_description(move_group, v
 
 
 def test_without_a_goal_or_a_plan_it_says_what_is_missing(move_group, ask):
-    from arm_viewer.requests import ExecutePlan
-
     view = ask(planned(), lambda view: view.said and view)
     assert "Choose a goal first" in view.said
     view = ask(ExecutePlan(NAME), lambda view: "no plan" in view.said and view)
@@ -170,9 +161,6 @@ def test_a_goal_in_collision_names_what_touches(move_group, ask):
 
 
 def test_the_goal_follows_the_tip_and_stays_where_it_cannot(move_group, ask):
-    from arm_node.rigid_transform import RigidTransform
-    from arm_viewer.requests import DragTip
-
     high, low = (DragTip(NAME, "all", RigidTransform((0.0, 0.0, z))) for z in (0.25, -0.25))
     goal = ask(high, lambda view: view.goal and view.goal.positions["turn"] == 0.25 and view.goal)
     assert (goal.positions, goal.problem) == ({"turn": 0.25}, "")
@@ -184,9 +172,6 @@ def test_the_goal_follows_the_tip_and_stays_where_it_cannot(move_group, ask):
 
 
 def test_a_plan_leads_to_the_pose_that_was_set_right_before_it(move_group, viewer, ask):
-    from arm_node.rigid_transform import RigidTransform
-    from arm_viewer.requests import DragTip
-
     ask(chosen(), lambda view: view.goal and view.goal.positions["turn"] == 0.5)
     move_group.goals.clear()
     viewer.node.send(DragTip(NAME, "all", RigidTransform((0.0, 0.0, 0.75))))
@@ -205,11 +190,6 @@ def test_a_plan_leads_to_the_pose_that_was_set_right_before_it(move_group, viewe
 def test_the_robot_follows_poses_of_its_tip_while_a_servo_node_runs(
     move_group, viewer, client_for_file
 ):
-    from moveit_msgs.msg import ServoStatus
-
-    from arm_node.rigid_transform import RigidTransform
-    from arm_viewer.requests import JogTip
-
     assert viewer.node.latest().planning[NAME].jog is None
     servo = FakeServo(client_for_file)
     jog = viewer.seen(lambda s: s.planning[NAME].jog)
@@ -241,9 +221,6 @@ def test_a_failed_plan_says_why_in_full(move_group, ask):
 
 
 def test_a_move_group_that_never_answers_is_said_to_and_one_that_ends_is_gone(viewer, ask):
-    from moveit_msgs.action import ExecuteTrajectory, MoveGroup
-    from rclpy.node import Node
-
     # Nobody spins this node.
     node = Node("silent", context=viewer.context)
     fake = FakeMoveGroup(node, SILENT)

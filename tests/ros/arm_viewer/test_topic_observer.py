@@ -5,6 +5,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from sensor_msgs.msg import JointState
+
+from arm_viewer.ros.graph_observer import TopicObserver
 
 FLOAT, STATE = "std_msgs/msg/Float64", "sensor_msgs/msg/JointState"
 TOPIC = "/late/joint_states"
@@ -42,8 +45,6 @@ def node():
 
 @pytest.fixture
 def observer(node):
-    from arm_viewer.ros.graph_observer import TopicObserver
-
     made = TopicObserver(node, node)
     made.measure(True)
     return made
@@ -64,8 +65,6 @@ def test_a_meter_gives_way_when_a_second_type_comes(node, observer):
 
 
 def test_of_several_types_the_one_is_measured_that_the_node_reads(node, observer):
-    from sensor_msgs.msg import JointState
-
     node.subscribe(JointState, TOPIC)
     observer.discover({TOPIC: [FLOAT, STATE]})
     assert node.read() == ["JointState", "JointState"]

@@ -1,6 +1,17 @@
 """What the page's node makes of topics, and what it publishes; without a page."""
 
 import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import Point, TransformStamped, Vector3
+from pal_statistics_msgs.msg import Statistic, Statistics
+from sensor_msgs.msg import CameraInfo, Image, JointState
+from std_msgs.msg import String
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import Marker, MarkerArray
+
+from arm_description.urdf.description_source import with_source
+from arm_viewer.requests import ListNumbers, MoveJoints, PlotCurves, ShowContacts, ShowPictures
+from arm_viewer.snapshot import CameraView, MarkerShape
 
 URDF = """<robot name='r'><link name='base'/><link name='arm'/><link name='finger'/>
   <joint name='turn' type='revolute'><parent link='base'/><child link='arm'/>
@@ -11,8 +22,6 @@ URDF = """<robot name='r'><link name='base'/><link name='arm'/><link name='finge
 
 
 def test_robots_are_found_in_every_namespace(client, viewer, latched):
-    from std_msgs.msg import String
-
     for namespace, text in (("left", URDF), ("right", "<robot name='r'/>")):
         publisher = client.node.create_publisher(String, f"/{namespace}/robot_description", latched)
         publisher.publish(String(data=text))
@@ -27,10 +36,6 @@ def test_robots_are_found_in_every_namespace(client, viewer, latched):
 def test_each_robots_meshes_are_found_where_its_description_comes_from(
     client, viewer, latched, tmp_path
 ):
-    from std_msgs.msg import String
-
-    from arm_description.urdf.description_source import with_source
-
     uris = ("../meshes/a.stl", "package://arm_description/meshes/a.stl")
     shapes = "".join(
         f"<visual><geometry><mesh filename='{uri}'/></geometry></visual>" for uri in uris
@@ -52,9 +57,6 @@ def test_each_robots_meshes_are_found_where_its_description_comes_from(
 
 
 def test_transforms_are_kept_and_invalid_ones_left_out(client, viewer):
-    from geometry_msgs.msg import TransformStamped
-    from tf2_msgs.msg import TFMessage
-
     good, broken = TransformStamped(), TransformStamped()
     good.header.frame_id, good.child_frame_id = "base", "arm"
     good.transform.translation.z = 0.5
@@ -68,11 +70,6 @@ def test_transforms_are_kept_and_invalid_ones_left_out(client, viewer):
 
 
 def test_frames_are_the_same_with_a_slash_before_their_names(client, viewer, latched):
-    from geometry_msgs.msg import TransformStamped
-    from sensor_msgs.msg import CameraInfo
-    from tf2_msgs.msg import TFMessage
-    from visualization_msgs.msg import Marker, MarkerArray
-
     good, itself = TransformStamped(), TransformStamped()
     good.header.frame_id, good.child_frame_id = "/odom", "/slashed/base"
     itself.header.frame_id, itself.child_frame_id = "/odom", "odom"
@@ -103,8 +100,6 @@ def test_frames_are_the_same_with_a_slash_before_their_names(client, viewer, lat
 
 
 def test_joint_states_need_not_say_everything(client, viewer):
-    from sensor_msgs.msg import JointState
-
     publisher = client.node.create_publisher(JointState, "/other/joint_states", 10)
     message = JointState(name=["a", "b"], position=[1.0, 2.0], velocity=[3.0])
     states = viewer.seen(
@@ -115,10 +110,6 @@ def test_joint_states_need_not_say_everything(client, viewer):
 
 
 def test_images_are_subscribed_to_only_while_they_are_wanted(client, viewer):
-    from sensor_msgs.msg import Image
-
-    from arm_viewer.requests import ShowPictures
-
     publisher = client.node.create_publisher(Image, "/camera/image", 10)
     viewer.seen(lambda s: "/camera/image" in s.image_topics)
     assert publisher.get_subscription_count() == 0
@@ -135,10 +126,6 @@ def test_images_are_subscribed_to_only_while_they_are_wanted(client, viewer):
 
 
 def test_cameras_are_known_by_their_intrinsics_unless_these_say_nothing(client, viewer):
-    from sensor_msgs.msg import CameraInfo
-
-    from arm_viewer.snapshot import CameraView
-
     good = CameraInfo(width=4, height=2, k=[3.0, 0.0, 2.0, 0.0, 5.0, 1.0, 0.0, 0.0, 1.0])
     good.header.frame_id = "optical"
     told = {"/eye/camera_info": good, "/blind/camera_info": CameraInfo(width=4, height=2)}
@@ -156,11 +143,6 @@ def test_cameras_are_known_by_their_intrinsics_unless_these_say_nothing(client, 
 
 
 def test_markers_come_and_go(client, viewer, latched):
-    from geometry_msgs.msg import Vector3
-    from visualization_msgs.msg import Marker, MarkerArray
-
-    from arm_viewer.snapshot import MarkerShape
-
     def box(number, action=Marker.ADD):
         marker = Marker(ns="crate", id=number, type=Marker.CUBE, action=action)
         marker.header.frame_id = "world"
@@ -180,11 +162,6 @@ def test_markers_come_and_go(client, viewer, latched):
 
 
 def test_contacts_are_subscribed_to_while_they_are_shown(client, viewer, latched):
-    from geometry_msgs.msg import Point
-    from visualization_msgs.msg import Marker, MarkerArray
-
-    from arm_viewer.requests import ShowContacts
-
     points = Marker(type=Marker.SPHERE_LIST, points=[Point(x=1.0)])
     points.header.frame_id = "world"
     forces = Marker(type=Marker.LINE_LIST, points=[Point(x=1.0), Point(z=2.0)], text="a on b: 1 N")
@@ -207,19 +184,12 @@ def test_contacts_are_subscribed_to_while_they_are_shown(client, viewer, latched
 
 
 def transform(child, parent="base"):
-    from geometry_msgs.msg import TransformStamped
-
     stamped = TransformStamped(child_frame_id=child)
     stamped.header.frame_id = parent
     return stamped
 
 
 def test_data_without_a_publisher_is_removed(client, viewer, latched):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import String
-    from tf2_msgs.msg import TFMessage
-    from visualization_msgs.msg import Marker, MarkerArray
-
     marker = Marker(ns="crate", type=Marker.CUBE)
     marker.header.frame_id = "world"
     states = JointState(name=["turn"], position=[1.0])
@@ -256,10 +226,6 @@ def test_data_without_a_publisher_is_removed(client, viewer, latched):
 
 
 def test_what_others_still_publish_stays_when_one_goes(client, viewer, latched):
-    from sensor_msgs.msg import JointState
-    from tf2_msgs.msg import TFMessage
-    from visualization_msgs.msg import Marker, MarkerArray
-
     def markers(name):
         marker = Marker(ns=name, type=Marker.CUBE)
         marker.header.frame_id = "world"
@@ -306,9 +272,6 @@ def test_what_others_still_publish_stays_when_one_goes(client, viewer, latched):
 
 
 def test_frames_of_a_former_description_are_forgotten(client, viewer, latched):
-    from std_msgs.msg import String
-    from tf2_msgs.msg import TFMessage
-
     statics = client.node.create_publisher(TFMessage, "/tf_static", latched)
     descriptions = client.node.create_publisher(String, "/changed/robot_description", latched)
     statics.publish(TFMessage(transforms=[transform("old_link"), transform("kept_link")]))
@@ -324,11 +287,6 @@ def test_frames_of_a_former_description_are_forgotten(client, viewer, latched):
 
 
 def test_without_a_robot_the_sliders_publish_its_joint_states(client, viewer, latched):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import String
-
-    from arm_viewer.requests import MoveJoints
-
     states = client.subscribe(JointState, "/joint_states")
     publisher = client.node.create_publisher(String, "/robot_description", latched)
     publisher.publish(String(data=URDF))
@@ -344,9 +302,6 @@ def test_without_a_robot_the_sliders_publish_its_joint_states(client, viewer, la
 
 
 def test_without_joint_states_positions_come_from_the_controller_manager(client, viewer):
-    from pal_statistics_msgs.msg import Statistic, Statistics
-    from sensor_msgs.msg import JointState
-
     publisher = client.node.create_publisher(
         Statistics, "/limp/controller_manager/introspection_data/full", 10
     )
@@ -372,10 +327,6 @@ def test_the_arm_without_controllers_falls_and_is_seen_to(launch, viewer):
 
 
 def test_numbers_of_any_topic_are_found_and_their_samples_kept(client, viewer):
-    from sensor_msgs.msg import JointState
-
-    from arm_viewer.requests import ListNumbers, PlotCurves
-
     publisher = client.node.create_publisher(JointState, "/plotted/states", 10)
     viewer.seen(lambda s: any(topic.name == "/plotted/states" for topic in s.topics))
     message = JointState(name=["a", "b"], position=[1.0, 2.5])
@@ -396,8 +347,6 @@ def test_numbers_of_any_topic_are_found_and_their_samples_kept(client, viewer):
 
 
 def test_what_nodes_log_and_diagnose_is_kept(client, viewer):
-    from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-
     status = DiagnosticStatus(
         level=b"\x01", name="motor: heat", message="warm", values=[KeyValue(key="T", value="60")]
     )

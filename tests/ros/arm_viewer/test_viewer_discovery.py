@@ -1,6 +1,13 @@
 """What one peer publishes amiss must not keep the page's node from what the others have."""
 
 import pytest
+from geometry_msgs.msg import TransformStamped
+from sensor_msgs.msg import CameraInfo, Image
+from std_msgs.msg import Float64
+from tf2_msgs.msg import TFMessage
+
+from arm_viewer.requests import MeasureRates, ShowPictures
+from arm_viewer.ros.command_observer import CommandObserver
 
 
 @pytest.fixture
@@ -13,8 +20,6 @@ def stranger(client):
 
 def find_new_camera(viewer, client, topic):
     """Wait until a camera that is new is found."""
-    from sensor_msgs.msg import CameraInfo
-
     info = CameraInfo(width=4, height=2, k=[3.0, 0.0, 2.0, 0.0, 5.0, 1.0, 0.0, 0.0, 1.0])
     info.header.frame_id = "optical"
     publisher = client.node.create_publisher(CameraInfo, topic, 10)
@@ -23,10 +28,6 @@ def find_new_camera(viewer, client, topic):
 
 
 def test_a_topic_of_two_types_is_left_out_alone_and_said_once(client, stranger, viewer, capfd):
-    from sensor_msgs.msg import CameraInfo, Image
-
-    from arm_viewer.requests import ShowPictures
-
     images = client.node.create_publisher(Image, "/clash/image", 10)
     viewer.seen(lambda s: "/clash/image" in s.image_topics)
     viewer.node.send(ShowPictures(frozenset({"/clash/image"})))
@@ -45,12 +46,6 @@ def test_a_topic_of_two_types_is_left_out_alone_and_said_once(client, stranger, 
 
 
 def test_rates_are_measured_beside_a_topic_of_another_type(client, stranger, viewer):
-    from geometry_msgs.msg import TransformStamped
-    from std_msgs.msg import Float64
-    from tf2_msgs.msg import TFMessage
-
-    from arm_viewer.requests import MeasureRates
-
     stranger.node.create_publisher(TransformStamped, "/tf", 10)
     publishers = {
         "/tf": (client.node.create_publisher(TFMessage, "/tf", 10), TFMessage()),
@@ -74,8 +69,6 @@ def test_rates_are_measured_beside_a_topic_of_another_type(client, stranger, vie
 def test_an_observer_that_fails_stops_no_other_and_is_named_once(
     client, viewer, monkeypatch, caplog
 ):
-    from arm_viewer.ros.command_observer import CommandObserver
-
     tries = []
 
     def fail(observer, topics):

@@ -4,7 +4,10 @@ import sys
 from math import atan2, cos, sin
 
 import pytest
+from geometry_msgs.msg import TwistStamped
+from nav_msgs.msg import Odometry
 from programs import Program
+from tf2_msgs.msg import TFMessage
 
 DRIVE = "/diff_drive_base_controller"
 EXAMPLE = (sys.executable, "-m", "arm_cli", "run", "gz_ros2_control_demos")
@@ -34,10 +37,6 @@ def goes_as_the_example_says(twist) -> bool:
 
 
 def test_it_drives_on_a_circle_and_tells_where_it_is(robot, client):
-    from geometry_msgs.msg import TwistStamped
-    from nav_msgs.msg import Odometry
-    from tf2_msgs.msg import TFMessage
-
     odometry = client.subscribe(Odometry, f"{DRIVE}/odom")
     frames = client.subscribe(TFMessage, "/tf")
     commands = client.publisher(TwistStamped, f"{DRIVE}/cmd_vel")
@@ -79,8 +78,6 @@ def test_it_drives_on_a_circle_and_tells_where_it_is(robot, client):
 
 
 def test_the_example_drives_it_until_it_is_stopped(robot, client):
-    from nav_msgs.msg import Odometry
-
     odometry = client.subscribe(Odometry, f"{DRIVE}/odom")
     driver = Program([*EXAMPLE, "example_diff_drive"])
     try:

@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from sensor_msgs.msg import JointState
 
 EXAMPLE = (sys.executable, "-m", "arm_cli", "run", "gz_ros2_control_demos", "example_gripper")
 EXAMPLE_TIMEOUT_S = 90.0
@@ -16,8 +17,6 @@ def fingers(message) -> list[float]:
 
 
 def test_the_example_closes_the_gripper_with_both_fingers(launch, client):
-    from sensor_msgs.msg import JointState
-
     launched = launch("gz_ros2_control_demos", "gripper_mimic_joint_example_effort.launch.py")
     launched.wait_until_ready()
     states = client.subscribe(JointState, "/joint_states")

@@ -5,7 +5,14 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from action_msgs.msg import GoalStatus
+from control_msgs.action import FollowJointTrajectory, GripperCommand
+from control_msgs.srv import QueryTrajectoryState
+from controller_manager_msgs.srv import ListControllers, SwitchController, UnloadController
 from robots import MYCOBOT_ARM
+from sensor_msgs.msg import JointState
+from tf2_msgs.msg import TFMessage
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 TARGET = (1.345, -1.23, 0.264, -0.296, 0.389, -1.5)
 HOME = (0.0,) * 6
@@ -36,8 +43,6 @@ def prefixed(joint: str, prefix: str) -> str:
 
 
 def trajectory(positions: tuple[float, ...], seconds: int, prefix: str) -> Any:
-    from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-
     point = JointTrajectoryPoint(positions=positions)
     point.time_from_start.sec = seconds
     return JointTrajectory(
@@ -58,11 +63,6 @@ def wait_for_pose(states: Any, pose: dict[str, float], within_rad: float = 0.005
 
 
 def test_arm_and_gripper_move_by_topic_and_by_actions(launch, client, result_of):
-    from action_msgs.msg import GoalStatus
-    from control_msgs.action import FollowJointTrajectory, GripperCommand
-    from sensor_msgs.msg import JointState
-    from trajectory_msgs.msg import JointTrajectory
-
     launch("mycobot", "prefix:=left_").wait_until_ready()
     states = client.subscribe(JointState, "/joint_states")
     publisher = client.publisher(JointTrajectory, "/arm_controller/joint_trajectory")
@@ -98,9 +98,6 @@ def copies(launch_for_class):
 
 class TestTwoCopies:
     def test_copies_serve_goals_and_queries_without_a_busy_thread(self, copies, client, result_of):
-        from control_msgs.action import FollowJointTrajectory
-        from control_msgs.srv import QueryTrajectoryState
-
         (simulation,) = copies.processes("arm_gazebo_node")
         controller = "/mycobot_280_1/arm_controller"
 
@@ -126,11 +123,6 @@ class TestTwoCopies:
         assert spent.user + spent.system - before.user - before.system < 0.5 * lasted_s
 
     def test_a_copy_has_actions_and_controllers_of_its_own(self, copies, client, result_of):
-        from action_msgs.msg import GoalStatus
-        from control_msgs.action import FollowJointTrajectory, GripperCommand
-        from controller_manager_msgs.srv import ListControllers, SwitchController, UnloadController
-        from sensor_msgs.msg import JointState
-
         own, other = "mycobot_280_1", "mycobot_280_0"
         states = {
             name: client.subscribe(JointState, f"/{name}/joint_states") for name in (own, other)
@@ -165,9 +157,6 @@ class TestTwoCopies:
 
 
 def test_the_description_alone_shows_the_robot_without_gripper(launch, client):
-    from sensor_msgs.msg import JointState
-    from tf2_msgs.msg import TFMessage
-
     launch(
         "mycobot_description",
         "robot_state_publisher.launch.py",
@@ -197,8 +186,6 @@ def generate_launch_description():
 
 
 def test_the_loop_tells_what_was_reached_and_stops_what_is_under_way(launch, client, tmp_path):
-    from sensor_msgs.msg import JointState
-
     file = tmp_path / "loop.launch.py"
     file.write_text(LOOP)
     loop = launch(str(file))

@@ -6,10 +6,18 @@ from math import dist, inf
 from typing import Any
 
 import pytest
+from control_msgs.action import FollowJointTrajectory
+from mycobot_interfaces.srv import GetPlanningScene
 from programs import Program
 from robots import MYCOBOT_ARM
 from run_python import run_python
+from sensor_msgs.msg import JointState
 from simulated import Simulated
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from arm_planning.perception.table_objects import Crop, objects_in_view
+from arm_planning.ros.point_clouds import points_of
+from arm_planning.ros.transform_reader import TransformReader
 
 PACKAGE = "mycobot_mtc_pick_place_demo"
 LAUNCH_FILE = "pick_place_demo.launch.py"
@@ -35,8 +43,6 @@ def server(launch_for_file) -> Program:
 
 
 def ask(client: Any, shape: str, *dimensions: float) -> Any:
-    from mycobot_interfaces.srv import GetPlanningScene
-
     request = GetPlanningScene.Request(target_shape=shape, target_dimensions=dimensions)
     return client.call(GetPlanningScene, SERVICE, request)
 
@@ -48,10 +54,6 @@ def centres(answer: Any) -> list[tuple[float, ...]]:
 
 def seen_with_the_robot(client: Any, seen: Any) -> list[Any]:
     """Return what the points of an answer show in the tutorial's crop, the robot as well."""
-    from arm_planning.perception.table_objects import Crop, objects_in_view
-    from arm_planning.ros.point_clouds import points_of
-    from arm_planning.ros.transform_reader import TransformReader
-
     reader, frame = TransformReader(client.node), seen.full_cloud.header.frame_id
     camera = client.wait_until(lambda: reader.pose(frame, "base_link"), f"{frame} on /tf")
     crop = Crop((0.1, 0.0, -inf), (1.1, 0.9, inf))
@@ -98,9 +100,6 @@ def arm_following(client: Any, points: Sequence[tuple[float, Sequence[float]]]) 
 
     In the end the arm goes home.
     """
-    from control_msgs.action import FollowJointTrajectory
-    from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-
     with client.tidied():
         action = client.action(FollowJointTrajectory, "/arm_controller/follow_joint_trajectory")
 
@@ -151,8 +150,6 @@ def test_an_arm_that_stands_in_the_crop_is_not_among_the_things(server, client_f
 
 
 def test_an_arm_that_moves_in_the_crop_is_not_among_the_things(server, client_for_file):
-    from sensor_msgs.msg import JointState
-
     without = ask(client_for_file, "cylinder", *DIMENSIONS)
     turn, *others = BEHIND
     ways = [

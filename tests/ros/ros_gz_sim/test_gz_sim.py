@@ -1,6 +1,7 @@
 """`arm launch ros_gz_sim gz_sim.launch.py gz_args:=shapes.sdf`: the shapes are there to be seen."""
 
 import numpy as np
+from sensor_msgs.msg import Image
 
 CHANNELS = {"box": 0, "cylinder": 1, "sphere": 2}
 """The red, the green and the blue shape."""
@@ -15,8 +16,6 @@ def pixels_of(image, strong: int) -> int:
 
 
 def test_the_camera_sees_box_cylinder_and_sphere(launch, client):
-    from sensor_msgs.msg import Image
-
     launch("ros_gz_sim", "gz_sim.launch.py", "gz_args:=shapes.sdf").wait_until_ready()
     pictures = client.subscribe(Image, "/videocamera")
     image = pictures.wait_for(1)[-1]
@@ -27,8 +26,6 @@ def test_the_camera_sees_box_cylinder_and_sphere(launch, client):
 
 
 def test_the_camera_looks_over_the_walls_of_the_house(launch, client):
-    from sensor_msgs.msg import Image
-
     launch("ros_gz_sim", "gz_sim.launch.py", "gz_args:=house.world").wait_until_ready()
     image = client.subscribe(Image, "/videocamera").wait_for(1)[-1]
     pixels = np.frombuffer(image.data, np.uint8).reshape(image.height, image.width, 3).astype(int)

@@ -1,9 +1,9 @@
 """`arm launch ros_gz_sim_demos joint_states.launch.py`: a pendulum swings, and publishes it."""
 
+from sensor_msgs.msg import JointState
+
 
 def test_the_pendulum_swings_freely(launch, client):
-    from sensor_msgs.msg import JointState
-
     demo = launch("ros_gz_sim_demos", "joint_states.launch.py", "viewer:=false")
     states = client.subscribe(JointState, "/joint_states")
     demo.wait_until_ready()

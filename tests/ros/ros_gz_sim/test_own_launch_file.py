@@ -3,6 +3,8 @@
 from pathlib import Path
 
 import pytest
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
 
 LAUNCH = """
 import os
@@ -94,9 +96,6 @@ def package(tmp_path) -> Path:
 
 
 def test_the_robot_that_it_spawns_moves(launch, client, package):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
     started = launch(str(package))
     started.wait_for_line("the world waits for its robot")
     started.wait_for_line("Entity creation successful.")

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from page_user import DESK, TIMEOUT_S, PageUser
+from playwright.sync_api import sync_playwright
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 
@@ -165,8 +166,6 @@ def page_url(page_program) -> str:
 @pytest.fixture(scope="module")
 def browser():
     """Return a browser; nothing is downloaded for it."""
-    from playwright.sync_api import sync_playwright
-
     with sync_playwright() as playwright:
         running = playwright.chromium.launch(
             executable_path=BROWSER, args=ARGUMENTS, timeout=TIMEOUT_S * 1000

@@ -5,6 +5,8 @@ import re
 
 import pytest
 from page_user import DESK, PHONE, PageUser
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -77,8 +79,6 @@ def dock_in(page, size):
 @pytest.fixture
 def command(client_for_file):
     """Send positions to the controller, by a function; a message may be lost, so send it again."""
-    from std_msgs.msg import Float64MultiArray
-
     publisher = client_for_file.publisher(Float64MultiArray, "/position_controller/commands")
     return lambda values: publisher.publish(Float64MultiArray(data=values))
 
@@ -315,8 +315,6 @@ def test_a_service_answers(page, size):
 
 
 def test_a_message_moves_the_arm_and_one_that_does_not_fit_is_refused(calls, client_for_file):
-    from sensor_msgs.msg import JointState
-
     states = client_for_file.subscribe(JointState, "/joint_states")
     calls.find("topic position_controller", "/position_controller/commands")
     field = calls.page.get_by_label("data", exact=True)

@@ -7,6 +7,7 @@ import pytest
 from page_user import DESK, PHONE, PageUser
 from robots import box, control, crate, joint, link, robot, sensor
 from simulated import Simulated
+from std_msgs.msg import Float64MultiArray
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -82,8 +83,6 @@ def user(request, page_at, page_url):
 @pytest.fixture
 def turn(client_for_file, user):
     """Return a function that turns the arm; a message may be lost, so it is sent again."""
-    from std_msgs.msg import Float64MultiArray
-
     publisher = client_for_file.publisher(Float64MultiArray, "/arm/commands")
 
     def turn_to(angle: float, until, what: str) -> None:

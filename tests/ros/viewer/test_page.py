@@ -6,7 +6,10 @@ from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
+from controller_manager_msgs.msg import ControllerManagerActivity
 from page_user import TIMEOUT_S
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -36,8 +39,6 @@ def visitor(visitor):
 @pytest.fixture
 def positions(client):
     """Return the joints' newest positions on /joint_states, by a function."""
-    from sensor_msgs.msg import JointState
-
     states = client.subscribe(JointState, "/joint_states")
 
     def newest() -> dict[str, float]:
@@ -50,8 +51,6 @@ def positions(client):
 @pytest.fixture
 def command(client):
     """Send positions to the controller, by a function; a message may be lost, so send it again."""
-    from std_msgs.msg import Float64MultiArray
-
     publisher = client.publisher(Float64MultiArray, "/position_controller/commands")
 
     def send(values) -> None:
@@ -220,8 +219,6 @@ def test_a_slider_follows_when_somebody_else_moves_the_arm(visitor, command):
 @pytest.fixture
 def commands(client, visitor, positions):
     """Return the commands that the page sends from now on, once it can drive the arm."""
-    from std_msgs.msg import Float64MultiArray
-
     heard = client.subscribe(Float64MultiArray, "/position_controller/commands")
 
     def moved() -> bool:
@@ -339,8 +336,6 @@ def nothing_but_faces_is_drawn(visitor) -> bool:
 
 
 def test_controllers_are_deactivated_and_activated(visitor, client, latched):
-    from controller_manager_msgs.msg import ControllerManagerActivity
-
     activity = client.subscribe(ControllerManagerActivity, "/controller_manager/activity", latched)
 
     def state() -> str:
@@ -382,8 +377,6 @@ def test_a_page_of_another_origin_is_refused(visitor, browser, page_url):
 def test_the_page_continues_when_the_simulation_restarts(
     visitor, simulation, launch_for_file, client
 ):
-    from sensor_msgs.msg import JointState
-
     banner = visitor.page.get_by_role("alert")
     banner.wait_for(state="hidden")
     assert simulation.stop() == 0, simulation.output

@@ -1,6 +1,9 @@
 """The page beside two robots in one world, and a third one that is only displayed."""
 
 import pytest
+from controller_manager_msgs.srv import LoadController, SwitchController
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -68,8 +71,6 @@ def page_url(simulation) -> str:
 @pytest.fixture
 def positions(client):
     """Return a joint's newest position in a namespace, by a function."""
-    from sensor_msgs.msg import JointState
-
     states = {n: client.subscribe(JointState, f"{n}/joint_states") for n in ("/left", "/right", "")}
 
     def newest(namespace: str, joint: str) -> float:
@@ -105,8 +106,6 @@ def test_a_slider_drives_a_gripper_and_shows_what_follows(visitor, positions):
 
 
 def test_a_loaded_controller_is_configured_then_activated(visitor, client):
-    from controller_manager_msgs.srv import LoadController, SwitchController
-
     visitor.open_tab("Control")
     manager = "/left/controller_manager"
     load = LoadController.Request(name="spare")
@@ -124,8 +123,6 @@ def test_a_loaded_controller_is_configured_then_activated(visitor, client):
 
 
 def test_a_displayed_robot_is_centred_and_put_anywhere(visitor, client, positions, latched):
-    from std_msgs.msg import String
-
     client.node.create_publisher(String, "/robot_description", latched).publish(
         String(data=DISPLAYED)
     )

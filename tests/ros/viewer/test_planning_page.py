@@ -3,6 +3,9 @@
 import math
 
 import pytest
+from moveit_msgs.msg import DisplayTrajectory, RobotTrajectory
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectoryPoint
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -23,8 +26,6 @@ def simulation(launch_for_file):
 @pytest.fixture
 def elbow(client):
     """Return the elbow's newest position on /joint_states, by a function."""
-    from sensor_msgs.msg import JointState
-
     states = client.subscribe(JointState, "/joint_states")
 
     def newest() -> float:
@@ -103,9 +104,6 @@ def test_a_box_in_the_way_is_named_and_fails_the_plan(planner):
 
 
 def test_a_plan_of_another_program_is_shown(planner, client):
-    from moveit_msgs.msg import DisplayTrajectory, RobotTrajectory
-    from trajectory_msgs.msg import JointTrajectoryPoint
-
     motion = RobotTrajectory()
     motion.joint_trajectory.joint_names = [ELBOW]
     ends = [JointTrajectoryPoint(positions=[READY_RAD]), JointTrajectoryPoint(positions=[0.5])]

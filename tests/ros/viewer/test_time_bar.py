@@ -5,6 +5,8 @@ import re
 import pytest
 from page_user import DESK, KEEP_WHAT_IS_SAID, PHONE, PageUser
 from simulated import PAUSED, PLAYING, Simulated
+from std_msgs.msg import Bool
+from std_srvs.srv import SetBool
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -93,8 +95,6 @@ def state(client):
 @pytest.fixture
 def stopped(client, latched):
     """Collect what /emergency_stop/active says."""
-    from std_msgs.msg import Bool
-
     return client.subscribe(Bool, "/emergency_stop/active", latched)
 
 
@@ -193,8 +193,6 @@ def test_the_emergency_stop_is_engaged_at_once_and_released_by_two_clicks(bar, s
 
 
 def test_a_stop_from_elsewhere_is_shown(bar, client):
-    from std_srvs.srv import SetBool
-
     client.call(SetBool, "/emergency_stop", SetBool.Request(data=True))
     bar.button("Stopped").wait_for()
     assert bar.button("Release stop").is_visible()

@@ -2,6 +2,8 @@
 
 import numpy as np
 import psutil
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
 
 TIMEOUT_S = 90.0
 POSE = [1.5, 0.9, 0.9, 0.5]
@@ -20,9 +22,6 @@ def settled_picture(client, display) -> np.ndarray:
 
 
 def test_the_window_shows_the_arm_and_closing_it_ends_nothing_else(launch, client, display):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
     launched = launch("camera:=none", "headless:=false", DISPLAY=display.name)
     launched.wait_until_ready()
     before = settled_picture(client, display)

@@ -1,16 +1,15 @@
 """`arm launch yahboom_rosmaster_gazebo`: a robot that drives sideways."""
 
 import pytest
+from control_msgs.msg import MecanumDriveControllerState
+from geometry_msgs.msg import TwistStamped
+from nav_msgs.msg import Odometry
+from tf2_msgs.msg import TFMessage
 
 DRIVE = "/mecanum_drive_controller"
 
 
 def test_it_drives_sideways_and_tells_where_it_is(launch, client):
-    from control_msgs.msg import MecanumDriveControllerState
-    from geometry_msgs.msg import TwistStamped
-    from nav_msgs.msg import Odometry
-    from tf2_msgs.msg import TFMessage
-
     launch("yahboom_rosmaster_gazebo", "yahboom_rosmaster.gazebo.launch.py").wait_until_ready()
     odometry = client.subscribe(Odometry, f"{DRIVE}/odometry")
     frames = client.subscribe(TFMessage, "/tf")

@@ -6,6 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from arm_cli.doctor.diagnosis import Diagnosis
+from arm_cli.doctor.ros_observer import observe
 from arm_cli.doctor.verb import SIMULATION, examine_running
 from arm_cli.ros.connection import connect
 
@@ -22,8 +23,6 @@ def look() -> Callable[[Callable[[Findings], bool]], Findings]:
     """
 
     def ask(is_right: Callable[[Findings], bool]) -> Findings:
-        from arm_cli.doctor.ros_observer import observe
-
         deadline = time.monotonic() + TIMEOUT_S
         while True:
             with connect() as session:

@@ -6,6 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from rclpy.action.client import ActionClient, ClientGoalHandle
+from rclpy.serialization import serialize_message
+from unique_identifier_msgs.msg import UUID
 
 DYING_CLIENT = Path(__file__).with_name("dying_client.py")
 
@@ -38,9 +41,6 @@ class SentGoal:
 
         It reads requests in their order, and answers one for the result of an unknown goal at once.
         """
-        from rclpy.action.client import ClientGoalHandle
-        from unique_identifier_msgs.msg import UUID
-
         unknown = ClientGoalHandle(self._caller.action, UUID(uuid=[7] * 16), None)
         self._caller.await_on_executor(unknown.get_result_async)
 
@@ -61,8 +61,6 @@ class ActionCaller:
     """
 
     def __init__(self, client: Any, action_type: type, name: str) -> None:
-        from rclpy.action.client import ActionClient
-
         self._type = action_type
         self._client = client
         self._name = name
@@ -135,7 +133,6 @@ def action_caller(client: Any) -> Iterator[Callable[[type, str], ActionCaller]]:
 @pytest.fixture
 def send_and_die(run: Any) -> Callable[[type, str, object], None]:
     """Return a function that sends a goal, waits for its acceptance, and dies with the client."""
-    from rclpy.serialization import serialize_message
 
     def send(action_type: type, name: str, goal: Any) -> None:
         client = run(DYING_CLIENT, action_type.__name__, name, serialize_message(goal).hex())

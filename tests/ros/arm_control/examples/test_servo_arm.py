@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from lifecycle_msgs.msg import State
+from sensor_msgs.msg import JointState
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -52,8 +54,6 @@ def control(launched, client, control_of):
 
 @pytest.fixture
 def joint_states(client):
-    from sensor_msgs.msg import JointState
-
     return client.subscribe(JointState, "/joint_states")
 
 
@@ -87,8 +87,6 @@ def test_its_parameters_take_effect_at_once(control, joint_states, set_parameter
 def test_servos_that_were_unplugged_are_used_again(
     control, client, launched, joint_states, set_parameter
 ):
-    from lifecycle_msgs.msg import State
-
     (fake,) = launched.processes("servo_arm.fake_servo")
     fake.kill()
     client.wait_until(lambda: servos(control).state.label == "unconfigured", "the servos are gone")

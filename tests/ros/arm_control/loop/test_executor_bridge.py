@@ -5,7 +5,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.task import Future
 
+import arm_control.loop.ros_executor_bridge
 from arm_control.errors import LoopStoppedError
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.pacer import Pacer
@@ -25,8 +29,6 @@ def loop() -> Iterator[ControlLoop]:
 
 @pytest.fixture
 def bridge():
-    import arm_control.loop.ros_executor_bridge
-
     return arm_control.loop.ros_executor_bridge
 
 
@@ -49,8 +51,6 @@ def test_the_loops_result_wakes_an_executor_asleep(client, loop, bridge):
 
 
 def test_a_future_completed_on_another_thread_wakes_an_executor_asleep(client, bridge):
-    from rclpy.task import Future
-
     future = Future()
     awaited = threading.Event()
 
@@ -128,8 +128,6 @@ def test_what_the_executor_has_yet_to_answer_is_answered_first(client, bridge, m
 
 
 def test_a_function_runs_though_the_executor_does_not(bridge, client):
-    from rclpy.executors import SingleThreadedExecutor
-
     idle = SingleThreadedExecutor(context=client.context)
     ran: list[int] = []
     bridge.run_on_executor(idle, lambda: ran.append(threading.get_ident()))
@@ -138,9 +136,6 @@ def test_a_function_runs_though_the_executor_does_not(bridge, client):
 
 
 def test_an_executor_that_was_shut_down_is_not_needed(bridge):
-    from rclpy.context import Context
-    from rclpy.executors import SingleThreadedExecutor
-
     context = Context()
     context.init()
     executor = SingleThreadedExecutor(context=context)

@@ -8,15 +8,27 @@ from dataclasses import dataclass
 from typing import Any
 
 import pytest
+import rclpy
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
+from std_srvs.srv import Trigger
 
 from arm_control import Controller, ControllerContext, InterfaceConfiguration, ReturnType, parameter
+from arm_control.controllers.forward_command.ros import ForwardCommandAdapter
 from arm_control.errors import ControllerError, ControllerManagerError
 from arm_control.lifecycle import LifecycleState
 from arm_control.loop.control_loop import ControlLoop
 from arm_control.loop.pacer import Pacer
+from arm_control.manager import controller_creation
 from arm_control.manager.controller_manager import ControllerManager
+from arm_control.manager.ros import control_plane
+from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
+from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
 from arm_control.manager.switch_planner import SwitchRequest
 from arm_control.testing import fake_hardware
+from arm_node.executor_thread import ExecutorThread
 
 TIMEOUT_S = 30.0
 
@@ -76,13 +88,6 @@ class RosBench:
     """A manager's node, its manager, a paused loop, and an executor."""
 
     def __init__(self, ending: ExitStack) -> None:
-        import rclpy
-        from rclpy.executors import SingleThreadedExecutor
-        from rclpy.signals import SignalHandlerOptions
-
-        from arm_control.manager.ros.controller_manager_node import ControllerManagerNode
-        from arm_node.executor_thread import ExecutorThread
-
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         ending.callback(rclpy.try_shutdown)
         self.node = ControllerManagerNode(["test", "--ros-args", "-p", "it.type:=test/Probe"])
@@ -99,8 +104,6 @@ class RosBench:
 
     def set(self, node: Any, name: str, value: object) -> Any:
         """Set a parameter where a client's request is served; return the result."""
-        from rclpy.parameter import Parameter
-
         done: Future[Any] = Future()
         change = [Parameter(name, value=value)]
         self.executor.create_task(lambda: done.set_result(node.set_parameters(change)[0]))
@@ -111,9 +114,6 @@ class LoadedProbe:
     """A probe under a control plane."""
 
     def __init__(self, bench: RosBench, monkeypatch: pytest.MonkeyPatch) -> None:
-        from arm_control.manager import controller_creation
-        from arm_control.manager.ros import control_plane
-
         made: list[Probe] = []
 
         def make(context: ControllerContext) -> Probe:
@@ -195,8 +195,6 @@ def test_a_parameter_set_while_it_is_configured_that_it_refuses_fails_that(loade
 
 
 def test_a_parameter_stored_after_the_configuration_takes_effect(loaded, ros_bench):
-    from rcl_interfaces.msg import SetParametersResult
-
     def configure(_: object) -> SetParametersResult:
         with ThreadPoolExecutor(1) as threads:
             threads.submit(loaded.plane.configure_controller, "it").result(TIMEOUT_S)
@@ -242,8 +240,6 @@ def test_one_that_could_not_stop_takes_parameters_when_it_is_configured(loaded):
 
 
 def test_warnings_of_overruns_can_be_switched_off_at_any_time(ros_bench, ending):
-    from arm_control.manager.ros.controller_manager_server import ControllerManagerServer
-
     server = ControllerManagerServer(
         ros_bench.node, ros_bench.manager, ros_bench.loop, ros_bench.executor
     )
@@ -256,10 +252,6 @@ def test_warnings_of_overruns_can_be_switched_off_at_any_time(ros_bench, ending)
 
 
 def test_a_controller_whose_callback_is_a_coroutine_is_not_configured(loaded, monkeypatch):
-    from std_srvs.srv import Trigger
-
-    from arm_control.controllers.forward_command.ros import ForwardCommandAdapter
-
     async def answer(_request: Any, response: Any) -> Any:
         return response
 

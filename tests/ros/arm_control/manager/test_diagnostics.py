@@ -4,6 +4,9 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import LoggerLevel
+from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 
 TASKS = ("Controllers Activity", "Hardware Components Activity", "Controller Manager Activity")
 TIMES = "diagnostics.threshold.controllers.execution_time"
@@ -42,8 +45,6 @@ def manager(run_manager):
 @pytest.fixture
 def wait_for_report(client) -> Callable[..., Any]:
     """Return a function that waits for a task's report of a kind."""
-    from diagnostic_msgs.msg import DiagnosticArray
-
     collector = client.subscribe(DiagnosticArray, "/diagnostics")
 
     def wait(task: int, condition: Callable[[Any], object], what: str) -> Any:
@@ -79,8 +80,6 @@ def test_it_is_published_by_the_manager_reliably(control, client):
 
 
 def test_each_message_has_all_tasks_of_one_hardware_id(client, control):
-    from diagnostic_msgs.msg import DiagnosticArray
-
     message = client.subscribe(DiagnosticArray, "/diagnostics").wait_for(1)[0]
     assert [s.name for s in message.status] == [f"controller_manager: {task}" for task in TASKS]
     assert {s.hardware_id for s in message.status} == {"ros2_control"}
@@ -152,9 +151,6 @@ def test_a_stuck_loop_is_reported_while_it_is_stuck(manager, wait_for_report):
     ],
 )
 def test_the_level_of_a_logger_can_be_read_and_set(client, control, node, name):
-    from rcl_interfaces.msg import LoggerLevel
-    from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
-
     assert control.load("position_controller")
     set_levels = f"/{node}/set_logger_levels"
     request = SetLoggerLevels.Request(
@@ -171,8 +167,6 @@ def test_the_level_of_a_logger_can_be_read_and_set(client, control, node, name):
 
 
 def test_a_manager_without_a_robot_says_what_it_waits_for(run, client):
-    from diagnostic_msgs.msg import DiagnosticArray
-
     program = run(
         "-m",
         "arm_control.manager.ros2_control_node",

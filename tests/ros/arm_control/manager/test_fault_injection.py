@@ -5,6 +5,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from controller_manager_msgs.msg import ControllerManagerActivity
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.qos import DurabilityPolicy, QoSProfile
 
 FAULTY = "test_faults/FaultyController"
 PARAMETERS = {
@@ -56,15 +59,10 @@ def fail(set_parameter) -> Callable[[str], None]:
 @pytest.fixture
 def reports(client):
     """Return what is published on /diagnostics."""
-    from diagnostic_msgs.msg import DiagnosticArray
-
     return client.subscribe(DiagnosticArray, "/diagnostics")
 
 
 def activity(client: Any) -> Any:
-    from controller_manager_msgs.msg import ControllerManagerActivity
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-
     return client.subscribe(
         ControllerManagerActivity,
         "/controller_manager/activity",

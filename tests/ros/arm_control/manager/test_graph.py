@@ -4,6 +4,11 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
+from control_msgs.msg import DynamicJointState
+from controller_manager_msgs.msg import ControllerManagerActivity
+from lifecycle_msgs.msg import TransitionEvent
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import JointState
 
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
 JOINTS = ("j0", "j1", "j2", "j3")
@@ -80,14 +85,10 @@ def test_unload_takes_the_node_away(control, client):
 @pytest.fixture
 def latched():
     """Return the profile of a subscriber that wants the last message, too."""
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-
     return QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def test_a_late_listener_learns_the_activity(control, client, latched):
-    from controller_manager_msgs.msg import ControllerManagerActivity
-
     control.start("position_controller")
     activity = client.subscribe(ControllerManagerActivity, "/controller_manager/activity", latched)
 
@@ -106,8 +107,6 @@ def test_a_late_listener_learns_the_activity(control, client, latched):
 
 
 def test_transitions_are_published(control, client):
-    from lifecycle_msgs.msg import TransitionEvent
-
     control.load("position_controller")
     events = client.subscribe(TransitionEvent, "/position_controller/transition_event")
     client.wait_until(
@@ -129,9 +128,6 @@ def test_transitions_are_published(control, client):
 
 
 def test_joint_states_are_complete_and_in_order(control, client):
-    from control_msgs.msg import DynamicJointState
-    from sensor_msgs.msg import JointState
-
     control.start("joint_state_broadcaster")
     messages = client.subscribe(JointState, "/joint_states").wait_for(3)
     for message in messages:
@@ -147,8 +143,6 @@ def test_joint_states_are_complete_and_in_order(control, client):
 
 
 def test_stamps_are_one_period_apart(control, client):
-    from sensor_msgs.msg import JointState
-
     control.start("joint_state_broadcaster")
     messages = client.subscribe(JointState, "/joint_states").wait_for(20)
     stamps = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in messages]
@@ -157,8 +151,6 @@ def test_stamps_are_one_period_apart(control, client):
 
 
 def test_a_late_subscriber_gets_the_last_state_while_paused(control, client, manager, latched):
-    from sensor_msgs.msg import JointState
-
     control.start("joint_state_broadcaster")
     client.subscribe(JointState, "/joint_states").wait_for(1)
     manager.tell("pause")
@@ -170,8 +162,6 @@ def test_a_late_subscriber_gets_the_last_state_while_paused(control, client, man
 
 
 def test_topics_can_be_local(control, client, run_manager):
-    from sensor_msgs.msg import JointState
-
     parameters = {
         "/**/controller_manager": {"ros__parameters": {"jsb.type": BROADCASTER}},
         "/**/jsb": {"ros__parameters": {"use_local_topics": True}},

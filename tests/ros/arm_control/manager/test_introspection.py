@@ -3,6 +3,9 @@
 from typing import Any
 
 import pytest
+from pal_statistics_msgs.msg import Statistics, StatisticsNames, StatisticsValues
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import Float64MultiArray
 
 JOINTS = ("j0", "j1", "j2", "j3")
 
@@ -10,8 +13,6 @@ JOINTS = ("j0", "j1", "j2", "j3")
 @pytest.fixture
 def latched():
     """Return the profile of a subscriber that wants the last message, too."""
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-
     return QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -33,9 +34,6 @@ def test_end_points_are_those_of_a_real_one(manager, client, prefix):
 
 
 def test_the_values_of_all_interfaces_go_by_their_names(control, client, latched):
-    from pal_statistics_msgs.msg import Statistics, StatisticsNames, StatisticsValues
-    from std_msgs.msg import Float64MultiArray
-
     control.start("position_controller")
     topic = "/controller_manager/introspection_data"
     values = client.subscribe(StatisticsValues, f"{topic}/values")
@@ -62,8 +60,6 @@ def test_the_values_of_all_interfaces_go_by_their_names(control, client, latched
 
 
 def test_statistics_follow_what_is_loaded(control, client, latched):
-    from pal_statistics_msgs.msg import StatisticsNames
-
     topic = "/controller_manager/statistics"
     names = client.subscribe(StatisticsNames, f"{topic}/names", latched)
     # What the test before had loaded may still be on its way out.
@@ -79,8 +75,6 @@ def test_statistics_follow_what_is_loaded(control, client, latched):
 
 
 def test_each_message_is_later_than_the_previous_one(control, client):
-    from pal_statistics_msgs.msg import StatisticsValues
-
     values = client.subscribe(StatisticsValues, "/controller_manager/introspection_data/values")
     values.wait_for(3)
     stamps = [(m.header.stamp.sec, m.header.stamp.nanosec) for m in values.messages]

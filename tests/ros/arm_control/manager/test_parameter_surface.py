@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 import yaml
+from rcl_interfaces.srv import DescribeParameters, ListParameters
 
 SURFACE: dict[str, Any] = yaml.safe_load(
     (Path(__file__).parent / "parameter_surface.yaml").read_text(encoding="utf-8")
@@ -34,7 +35,6 @@ def manager(run_manager):
 @pytest.fixture
 def describe(client):
     """Return a function that returns the descriptors of all parameters of a node by name."""
-    from rcl_interfaces.srv import DescribeParameters, ListParameters
 
     def describe_(node: str, *names: str) -> dict[str, Any]:
         if not names:

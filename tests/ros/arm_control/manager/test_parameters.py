@@ -4,6 +4,8 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
+from rclpy.parameter import parameter_value_to_python
 
 POSITION = "position_controllers/JointGroupPositionController"
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
@@ -13,8 +15,6 @@ JOINTS = ("j0", "j1", "j2", "j3")
 @pytest.fixture
 def parameters_of(client) -> Callable[[str], dict[str, Any]]:
     """Return a function that reads all parameters of a node."""
-    from rcl_interfaces.srv import GetParameters, ListParameters
-    from rclpy.parameter import parameter_value_to_python
 
     def read(node: str) -> dict[str, Any]:
         names = client.call(
@@ -64,8 +64,6 @@ def threshold_parameters() -> dict[str, float]:
 
 
 def test_the_managers_parameters(control, parameters_of, client):
-    from rcl_interfaces.srv import DescribeParameters
-
     control.load("position_controller")
     parameters = parameters_of("/controller_manager")
     expected = {

@@ -3,13 +3,13 @@
 from itertools import pairwise
 
 import pytest
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
 
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
 
 
 def test_all_of_it_can_live_in_a_namespace(run_manager, control_of, client):
-    from sensor_msgs.msg import JointState
-
     program = run_manager(
         parameters={
             "/right/controller_manager": {"ros__parameters": {"jsb.type": BROADCASTER}},
@@ -41,9 +41,6 @@ def test_it_ends_with_code_0(run_manager, paused):
 
 
 def test_commands_are_kept_within_the_limits_of_the_description(run_manager, control_of, client):
-    from sensor_msgs.msg import JointState
-    from std_msgs.msg import Float64MultiArray
-
     types = {
         "jsb.type": BROADCASTER,
         "mover.type": "position_controllers/JointGroupPositionController",

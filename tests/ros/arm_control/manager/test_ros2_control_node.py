@@ -7,6 +7,12 @@ from typing import Any
 
 import pytest
 import yaml
+from control_msgs.msg import MultiDOFCommand, MultiDOFStateStamped
+from lifecycle_msgs.msg import State
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray, String
+from std_srvs.srv import SetBool
 
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
 JOINTS = ("j0", "j1")
@@ -98,7 +104,6 @@ def component(control) -> Callable[[str], Any]:
 @pytest.fixture
 def set_state(control) -> Callable[..., Any]:
     """Return a function that sets a component's state."""
-    from lifecycle_msgs.msg import State
 
     def set_(name: str, **state: Any) -> Any:
         return control.call("set_hardware_component_state", name=name, target_state=State(**state))
@@ -124,8 +129,6 @@ def waiting(run, tmp_path_factory):
 @pytest.fixture
 def describe(client, latched) -> Callable[[str], None]:
     """Return a function that publishes a description for the waiting manager."""
-    from std_msgs.msg import String
-
     publisher = client.node.create_publisher(String, "/waiting/robot_description", latched)
     return lambda text: publisher.publish(String(data=text))
 
@@ -168,9 +171,6 @@ def test_a_robot_is_waited_for_until_a_description_can_be_used(
 
 
 def test_with_use_sim_time_it_uses_the_clock_topic(waiting, client, describe, control_of):
-    from rosgraph_msgs.msg import Clock
-    from sensor_msgs.msg import JointState
-
     describe(robot(ARM))
     control = control_of("/waiting")
     # Before the first /clock time stands still, and all of this works.
@@ -291,9 +291,6 @@ def test_cleanup_controller(control):
 
 
 def test_a_chain_of_controllers(control, client):
-    from control_msgs.msg import MultiDOFStateStamped
-    from std_msgs.msg import Float64MultiArray
-
     for name in ("top", "pid"):
         control.load(name)
         assert control.configure(name)
@@ -331,9 +328,6 @@ def test_a_chain_of_controllers(control, client):
 
 
 def test_references_come_by_topic_unless_a_controller_commands(control, client):
-    from control_msgs.msg import MultiDOFCommand, MultiDOFStateStamped
-    from std_srvs.srv import SetBool
-
     control.start("pid")
     state = client.subscribe(MultiDOFStateStamped, "/pid/controller_state")
     references = client.publisher(MultiDOFCommand, "/pid/reference")

@@ -9,6 +9,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from arm_control.manager.controller_creation import MANAGER
 from arm_control.manager.parameter_file import ParametersByNode
+from arm_control.manager.ros.parameter_node import ParameterNode
 from arm_gazebo.launching.controllers_file import read_controllers
 
 VALUES = """
@@ -57,8 +58,6 @@ def context():
     ],
 )
 def test_a_node_and_a_program_get_the_same_values(context, tmp_path, text, node, namespace):
-    from arm_control.manager.ros.parameter_node import ParameterNode
-
     path = tmp_path / "controllers.yaml"
     path.write_text(text + "typed: {ros__parameters: {type: a/B}}\n")
     made = ParameterNode(

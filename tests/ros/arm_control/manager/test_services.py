@@ -3,6 +3,8 @@
 from typing import Any
 
 import pytest
+from builtin_interfaces.msg import Duration
+from lifecycle_msgs.msg import State
 
 POSITION = "position_controllers/JointGroupPositionController"
 BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
@@ -182,8 +184,6 @@ def test_hardware_components(control):
 
 
 def test_hardware_can_be_deactivated_and_activated_by_id_or_label(control):
-    from lifecycle_msgs.msg import State
-
     def set_state(name: str, **state: Any) -> Any:
         return control.call("set_hardware_component_state", name=name, target_state=State(**state))
 
@@ -209,8 +209,6 @@ def test_everything_works_while_paused(control, manager):
 
 
 def test_a_loop_that_is_stuck_lets_a_switch_time_out_and_lists_are_answered(control, manager):
-    from builtin_interfaces.msg import Duration
-
     control.load("position_controller")
     control.configure("position_controller")
     manager.tell("block")

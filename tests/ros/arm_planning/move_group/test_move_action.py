@@ -6,7 +6,11 @@ from contextlib import closing
 from typing import Any
 
 import pytest
+from controller_manager_msgs.srv import SwitchController
+from moveit_msgs.action import ExecuteTrajectory
+from moveit_msgs.srv import GetPositionFK
 from programs import RosProgram
+from std_msgs.msg import String
 
 SUCCESS, PREEMPTED, INVALIDATED, CONTROL_FAILED = 1, -7, -3, -4
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
@@ -36,8 +40,6 @@ def at_the_start(planning, turn_to):
 
 def half_way(planning: Any, joints: Any) -> list[float]:
     """Return where the flange of the bent arm passes at the angle 0."""
-    from moveit_msgs.srv import GetPositionFK
-
     request = GetPositionFK.Request(fk_link_names=["link6_flange"])
     request.robot_state.is_diff = True
     request.robot_state.joint_state.name = list(joints())
@@ -47,8 +49,6 @@ def half_way(planning: Any, joints: Any) -> list[float]:
 
 
 def execute_goal(response: Any) -> Any:
-    from moveit_msgs.action import ExecuteTrajectory
-
     return ExecuteTrajectory.Goal(trajectory=response.trajectory)
 
 
@@ -103,8 +103,6 @@ def test_many_goals_at_once_can_all_be_cancelled(planning, at_the_start, turn_to
 
 
 def test_a_plan_is_executed_on_its_own(planning, at_the_start, turn_to):
-    from moveit_msgs.action import ExecuteTrajectory
-
     response = planning.plan(turn_to(0.4))
     goal = planning.send(ExecuteTrajectory, "/execute_trajectory", execute_goal(response))
     ended = goal.end()
@@ -113,9 +111,6 @@ def test_a_plan_is_executed_on_its_own(planning, at_the_start, turn_to):
 
 
 def test_the_event_stop_preempts_a_motion(planning, at_the_start, turn_to):
-    from moveit_msgs.action import ExecuteTrajectory
-    from std_msgs.msg import String
-
     response = planning.plan(turn_to(1.0, **SLOW))
     goal = planning.send(ExecuteTrajectory, "/execute_trajectory", execute_goal(response))
     planning.joint_moves(TURN, by=0.05)
@@ -126,8 +121,6 @@ def test_the_event_stop_preempts_a_motion(planning, at_the_start, turn_to):
 
 
 def test_a_plan_from_elsewhere_is_not_executed(planning, at_the_start, turn_to, joints):
-    from moveit_msgs.action import ExecuteTrajectory
-
     response = planning.plan(turn_to(0.4, start=joints(0.0, -1.0)))
     goal = planning.send(ExecuteTrajectory, "/execute_trajectory", execute_goal(response))
     ended = goal.end()
@@ -149,8 +142,6 @@ def test_a_box_put_into_the_way_stops_the_motion(planning, at_the_start, turn_to
 @pytest.fixture
 def deactivate(planning):
     """Return a function that deactivates a controller until the end of the test."""
-    from controller_manager_msgs.srv import SwitchController
-
     stopped: list[str] = []
 
     def switch(**names: list[str]) -> None:

@@ -5,6 +5,27 @@ import math
 from typing import Any
 
 import pytest
+from geometry_msgs.msg import Pose
+from moveit_msgs.msg import (
+    AttachedCollisionObject,
+    CollisionObject,
+    ContactInformation,
+    DisplayTrajectory,
+    PlannerParams,
+    PlanningScene,
+)
+from moveit_msgs.srv import (
+    GetCartesianPath,
+    GetPlannerParams,
+    GetPositionFK,
+    GetPositionIK,
+    GetStateValidity,
+    QueryPlannerInterfaces,
+    SetPlannerParams,
+)
+from rclpy.action import get_action_names_and_types
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from std_msgs.msg import String
 
 SUCCESS = 1
 SERVICES = {
@@ -41,8 +62,6 @@ SAID = {
 
 def fk(planning: Any, positions: dict[str, float], link: str = "link6_flange") -> Any:
     """Return a link's pose in the planning frame."""
-    from moveit_msgs.srv import GetPositionFK
-
     request = GetPositionFK.Request(fk_link_names=[link])
     set_state(request.robot_state, positions)
     answer = planning.call("/compute_fk", request)
@@ -69,8 +88,6 @@ def points(response: Any) -> list[Any]:
 
 
 def test_services_and_actions_have_the_names_and_types_of_moveit(planning):
-    from rclpy.action import get_action_names_and_types
-
     node = planning.client.node
 
     def found() -> dict[str, list[str]]:
@@ -83,8 +100,6 @@ def test_services_and_actions_have_the_names_and_types_of_moveit(planning):
 
 @pytest.mark.parametrize(("topic", "kind"), HEARD.items())
 def test_topics_that_it_hears_are_reliable(planning, topic, kind):
-    from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
-
     node = planning.client.node
     found = planning.client.wait_until(
         lambda: node.get_subscriptions_info_by_topic(topic), f"a reader of {topic}"
@@ -96,8 +111,6 @@ def test_topics_that_it_hears_are_reliable(planning, topic, kind):
 
 @pytest.mark.parametrize(("topic", "kind"), SAID.items())
 def test_topics_that_it_publishes_are_reliable(planning, topic, kind):
-    from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
-
     node = planning.client.node
     found = planning.client.wait_until(
         lambda: node.get_publishers_info_by_topic(topic), f"a writer of {topic}"
@@ -110,15 +123,11 @@ def test_topics_that_it_publishes_are_reliable(planning, topic, kind):
 
 
 def test_the_srdf_reaches_a_late_client(planning, latched):
-    from std_msgs.msg import String
-
     heard = planning.client.subscribe(String, "/robot_description_semantic", latched)
     assert '<group name="arm">' in heard.wait_for(1)[0].data.replace("'", '"')
 
 
 def test_planners_are_listed_alone_and_for_each_group(planning):
-    from moveit_msgs.srv import QueryPlannerInterfaces
-
     found = planning.call("/query_planner_interface", QueryPlannerInterfaces.Request())
     ids = {each.pipeline_id: set(each.planner_ids) for each in found.planner_interfaces}
     assert {"arm", "RRTConnect", "arm[RRTConnect]"} <= ids["ompl"]
@@ -183,8 +192,6 @@ def test_a_plan_leads_around_a_box_that_came_by_topic(
 
 
 def test_a_plan_is_displayed(planning, request_of, joint_goal, joints):
-    from moveit_msgs.msg import DisplayTrajectory
-
     shown = planning.client.subscribe(DisplayTrajectory, "/display_planned_path")
     node = planning.client.node
     planning.client.wait_until(
@@ -200,8 +207,6 @@ def test_a_plan_is_displayed(planning, request_of, joint_goal, joints):
 
 
 def test_inverse_kinematics_undoes_forward_kinematics(planning, joints):
-    from moveit_msgs.srv import GetPositionIK
-
     wanted = fk(planning, joints(0.4, -0.6, -0.5, 0.3, 0.2, 0.1))
     request = GetPositionIK.Request()
     request.ik_request.group_name = "arm"
@@ -223,8 +228,6 @@ def test_inverse_kinematics_undoes_forward_kinematics(planning, joints):
 
 
 def test_forward_kinematics_skips_an_unknown_link_and_says_so(planning):
-    from moveit_msgs.srv import GetPositionFK
-
     request = GetPositionFK.Request(fk_link_names=["link6_flange", "nonsense"])
     answer = planning.call("/compute_fk", request)
     assert answer.error_code.val == -18
@@ -233,8 +236,6 @@ def test_forward_kinematics_skips_an_unknown_link_and_says_so(planning):
 
 
 def test_a_pose_out_of_reach_has_no_inverse(planning):
-    from moveit_msgs.srv import GetPositionIK
-
     request = GetPositionIK.Request()
     request.ik_request.group_name = "arm"
     request.ik_request.pose_stamped.pose.position.x = 2.0
@@ -244,9 +245,6 @@ def test_a_pose_out_of_reach_has_no_inverse(planning):
 
 
 def test_validity_names_what_touches(planning, joints, box):
-    from moveit_msgs.msg import ContactInformation
-    from moveit_msgs.srv import GetStateValidity
-
     request = GetStateValidity.Request(group_name="arm")
     set_state(request.robot_state, joints(0.0, -1.0))
     free = planning.call("/check_state_validity", request)
@@ -271,8 +269,6 @@ def test_validity_names_what_touches(planning, joints, box):
 
 
 def test_validity_evaluates_constraints(planning, joints, joint_goal):
-    from moveit_msgs.srv import GetStateValidity
-
     request = GetStateValidity.Request(group_name="arm")
     request.constraints = joint_goal({"link1_to_link2": 0.5})
     set_state(request.robot_state, joints(0.0))
@@ -290,8 +286,6 @@ BENT = (0.0, -0.7, -1.0, 0.2, 0.0, 0.0)
 
 
 def cartesian(joints: Any, *way_points: Any, **fields: Any) -> Any:
-    from moveit_msgs.srv import GetCartesianPath
-
     given = {"group_name": "arm", "link_name": "link6_flange", "max_step": 0.005, **fields}
     request = GetCartesianPath.Request(waypoints=list(way_points), avoid_collisions=True, **given)
     set_state(request.start_state, joints(*BENT))
@@ -328,8 +322,6 @@ def test_a_straight_path_ends_before_a_box_and_says_why(planning, joints, box):
 
 
 def test_way_points_in_the_links_own_frame_are_relative_to_it(planning, joints):
-    from geometry_msgs.msg import Pose
-
     step = Pose()
     step.position.z = -0.02
     request = cartesian(joints, step)
@@ -346,8 +338,6 @@ def test_way_points_in_the_links_own_frame_are_relative_to_it(planning, joints):
 
 
 def test_the_whole_scene_goes_round_without_loss(planning, box):
-    from moveit_msgs.msg import AttachedCollisionObject, PlanningScene
-
     assert planning.apply_object(box("crate", (0.3, 0.1, 0.2), (0.1, 0.2, 0.3)))
     held = AttachedCollisionObject(link_name="link6_flange", touch_links=["gripper_base"])
     held.object = box("tool", (0.0, 0.0, 0.05), (0.01, 0.01, 0.01), "link6_flange")
@@ -375,8 +365,6 @@ def test_the_whole_scene_goes_round_without_loss(planning, box):
 
 
 def test_an_all_default_diff_changes_nothing(planning, box, request_of, joint_goal, joints):
-    from moveit_msgs.msg import PlanningScene
-
     assert planning.apply_object(box("crate", (0.3, 0.1, 0.2), (0.1, 0.2, 0.3)))
     # pymoveit2's move_action goal has the default planning_options.
     request = request_of(joint_goal(joints(0.5)), start=joints())
@@ -386,8 +374,6 @@ def test_an_all_default_diff_changes_nothing(planning, box, request_of, joint_go
 
 
 def test_changes_are_published_on_the_monitored_scene(planning, box):
-    from moveit_msgs.msg import PlanningScene
-
     heard = planning.client.subscribe(PlanningScene, "/monitored_planning_scene")
     planning.client.be_known_to_server("/apply_planning_scene")
     assert planning.apply_object(box("new_crate", (0.3, 0.1, 0.2), (0.1, 0.2, 0.3)))
@@ -400,8 +386,6 @@ def test_changes_are_published_on_the_monitored_scene(planning, box):
 
 
 def test_an_object_that_does_not_exist_is_not_removed(planning):
-    from moveit_msgs.msg import CollisionObject
-
     unknown = CollisionObject(id="nonsense", operation=CollisionObject.REMOVE)
     assert not planning.apply_object(unknown)
 
@@ -466,9 +450,6 @@ def test_a_straight_path_with_a_bad_step_or_frame_is_refused(planning, joints):
 
 
 def test_forty_requests_at_once_are_all_answered(planning):
-    from moveit_msgs.srv import GetStateValidity
-    from rclpy.qos import QoSProfile
-
     client, name = planning.client, "/check_state_validity"
     # With the usual ten, the client itself loses answers.
     service = client.node.create_client(GetStateValidity, name, qos_profile=QoSProfile(depth=100))
@@ -482,9 +463,6 @@ def test_forty_requests_at_once_are_all_answered(planning):
 
 
 def test_a_planners_parameters_are_set_and_told(planning):
-    from moveit_msgs.msg import PlannerParams
-    from moveit_msgs.srv import GetPlannerParams, SetPlannerParams
-
     which = {"pipeline_id": "ompl", "planner_config": "RRTConnectkConfigDefault", "group": "arm"}
     given = PlannerParams(keys=["range"], values=["1.5"])
     planning.call("/set_planner_params", SetPlannerParams.Request(params=given, **which))

@@ -4,6 +4,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from moveit_msgs.srv import QueryPlannerInterfaces
+from rclpy.action import get_action_server_names_and_types_by_node
 
 PAGE = Path(__file__).parents[4] / "docs" / "reference" / "moveit.md"
 EVERY_NODE_HAS = ("rcl_interfaces/", "type_description_interfaces/")
@@ -38,8 +40,6 @@ def offered(client: Any, what: str) -> dict[str, str]:
 
 
 def actions_of(client: Any) -> dict[str, str]:
-    from rclpy.action import get_action_server_names_and_types_by_node
-
     found = get_action_server_names_and_types_by_node(client.node, NODE, "/")
     return {name: types[0] for name, types in found}
 
@@ -65,8 +65,6 @@ def test_the_page_lists_the_actions(planning):
 
 
 def test_the_page_names_the_planners_that_need_nothing(planning):
-    from moveit_msgs.srv import QueryPlannerInterfaces
-
     answer = planning.call("/query_planner_interface", QueryPlannerInterfaces.Request())
     section = PAGE.read_text().split("\n## Planners\n")[1].split("\n## ")[0]
     for interface in answer.planner_interfaces:

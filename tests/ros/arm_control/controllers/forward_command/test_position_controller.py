@@ -4,6 +4,9 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
 
 COMMANDS = "/position_controller/commands"
 
@@ -11,8 +14,6 @@ COMMANDS = "/position_controller/commands"
 @pytest.fixture
 def publish(client) -> Callable[..., None]:
     """Return a function that publishes one command."""
-    from std_msgs.msg import Float64MultiArray
-
     publishers: list[Any] = []
 
     def send(*data: float) -> None:
@@ -26,8 +27,6 @@ def publish(client) -> Callable[..., None]:
 @pytest.fixture
 def positions(control, client):
     """Start both controllers; return what is published as joint states."""
-    from sensor_msgs.msg import JointState
-
     control.start("joint_state_broadcaster", "position_controller")
     states = client.subscribe(JointState, "/joint_states")
     states.wait_for(1)
@@ -48,9 +47,6 @@ def test_a_command_shows_in_the_joint_states(positions, publish):
 
 
 def test_messages_of_a_best_effort_publisher_arrive(positions, client):
-    from rclpy.qos import qos_profile_sensor_data
-    from std_msgs.msg import Float64MultiArray
-
     publisher = client.publisher(Float64MultiArray, COMMANDS, qos_profile_sensor_data)
     publisher.publish(Float64MultiArray(data=[0.5, 0.0, 0.0, 0.0]))
     assert wait_for(positions, 0.5, 0.0, 0.0, 0.0).name == ["j0", "j1", "j2", "j3"]

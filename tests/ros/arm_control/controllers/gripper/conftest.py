@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from sensor_msgs.msg import JointState
 
 CONTROLLERS = """\
 controller_manager:
@@ -98,7 +99,6 @@ def grip(caller_of: Callable[[str], Any]) -> Callable[..., Any]:
 @pytest.fixture
 def grip_parallel(caller_of: Callable[[str], Any]) -> Callable[..., Any]:
     """Return a function that sends the fields of a joint state."""
-    from sensor_msgs.msg import JointState
 
     def send(*positions: float, **fields: Any) -> Any:
         return caller_of("parallel_gripper").send(command=JointState(position=positions, **fields))

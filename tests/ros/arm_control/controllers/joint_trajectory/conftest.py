@@ -4,6 +4,11 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import pytest
+from builtin_interfaces.msg import Duration
+from control_msgs.action import FollowJointTrajectory
+from control_msgs.msg import JointTrajectoryControllerState
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 NAME = "joint_trajectory_controller"
 JOINTS = ("j0", "j1", "j2", "j3")
@@ -43,8 +48,6 @@ def trajectory() -> Callable[..., Any]:
 
     A point is a time and the joints' positions, then perhaps velocities, then accelerations.
     """
-    from builtin_interfaces.msg import Duration
-    from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
     def make(*points: Point, joints: Sequence[str] = JOINTS) -> Any:
         return JointTrajectory(
@@ -99,7 +102,6 @@ class Sender:
 @pytest.fixture
 def sender_to(action_caller: Any, trajectory: Any) -> Callable[[str], Sender]:
     """Return a function that makes a sender of goals to a controller."""
-    from control_msgs.action import FollowJointTrajectory
 
     def make(name: str) -> Sender:
         caller = action_caller(FollowJointTrajectory, f"/{name}/follow_joint_trajectory")
@@ -124,9 +126,6 @@ def active(control: Any) -> Any:
 @pytest.fixture
 def states(client: Any) -> Any:
     """Return the controller's states as they are published."""
-    from control_msgs.msg import JointTrajectoryControllerState
-    from rclpy.qos import DurabilityPolicy, QoSProfile
-
     # So deep that an executor which is held up misses none.
     latched = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     return client.subscribe(JointTrajectoryControllerState, f"/{NAME}/controller_state", latched)

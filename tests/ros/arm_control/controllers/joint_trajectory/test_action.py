@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
+from control_msgs.action import FollowJointTrajectory
 
 NAME = "joint_trajectory_controller"
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
@@ -134,8 +135,6 @@ def test_the_action_works_again_after_another_configure(active, send):
 def test_a_client_that_dies_in_the_middle_of_a_goal_does_no_harm(
     active, send, send_and_die, trajectory, states, manager
 ):
-    from control_msgs.action import FollowJointTrajectory
-
     goal = FollowJointTrajectory.Goal(trajectory=trajectory((1.0, [0.5] * 4)))
     send_and_die(FollowJointTrajectory, f"/{NAME}/follow_joint_trajectory", goal)
     states.wait_until(

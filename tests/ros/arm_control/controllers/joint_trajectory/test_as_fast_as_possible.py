@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 import yaml
+from control_msgs.srv import QueryTrajectoryState
 
 STILL = (0.0, 0.0, 0.0, 0.0)
 HOME = (0.0, 0.0, 0.0, 0.0)
@@ -71,7 +72,6 @@ def manager(run, tmp_path_factory):
 @pytest.fixture
 def measured(client) -> Callable[[str], list[float]]:
     """Return a function that asks a controller where the joints are."""
-    from control_msgs.srv import QueryTrajectoryState
 
     def ask(name: str) -> list[float]:
         service = f"/{name}/query_state"

@@ -4,6 +4,11 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from builtin_interfaces.msg import Time
+from control_msgs.msg import SpeedScalingFactor
+from control_msgs.srv import QueryTrajectoryState
+from rclpy.qos import qos_profile_sensor_data
+from trajectory_msgs.msg import JointTrajectory
 
 NAME = "joint_trajectory_controller"
 JOINTS = ["j0", "j1", "j2", "j3"]
@@ -23,8 +28,6 @@ def loaded(control):
 @pytest.fixture
 def query(client) -> Callable[[float], Any]:
     """Return a function that asks for the state at a time."""
-    from builtin_interfaces.msg import Time
-    from control_msgs.srv import QueryTrajectoryState
 
     def ask(time_s: float) -> Any:
         seconds, nanoseconds = divmod(round(time_s * 1e9), 1_000_000_000)
@@ -133,9 +136,6 @@ def test_a_late_subscriber_gets_the_last_state_of_an_inactive_one(active, send, 
 
 
 def test_a_trajectory_on_the_topic_is_followed(active, client, trajectory, states):
-    from rclpy.qos import qos_profile_sensor_data
-    from trajectory_msgs.msg import JointTrajectory
-
     publisher = client.publisher(JointTrajectory, f"/{NAME}/joint_trajectory")
     publisher.publish(trajectory((0.1, THERE)))
     states.wait_until(
@@ -154,8 +154,6 @@ def test_a_trajectory_on_the_topic_is_followed(active, client, trajectory, state
 def test_a_faulty_trajectory_on_the_topic_is_dropped_with_the_reason(
     active, client, trajectory, manager
 ):
-    from trajectory_msgs.msg import JointTrajectory
-
     publisher = client.publisher(JointTrajectory, f"/{NAME}/joint_trajectory")
     publisher.publish(trajectory((0.1, (1, 2, 3))))
     reason = "Mismatch between joint_names size (4) and positions (3) at point #0."
@@ -192,8 +190,6 @@ def test_query_state_answers_while_paused(active, states, query, manager):
 def test_speed_scaling_stops_the_trajectory_and_lets_it_go_on(
     active, client, send, states, latched
 ):
-    from control_msgs.msg import SpeedScalingFactor
-
     publisher = client.publisher(SpeedScalingFactor, f"/{NAME}/speed_scaling_input", latched)
     publisher.publish(SpeedScalingFactor(factor=0.0))
     states.wait_until(

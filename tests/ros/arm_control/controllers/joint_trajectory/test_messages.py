@@ -2,8 +2,15 @@
 
 import numpy as np
 import pytest
+from builtin_interfaces.msg import Duration
+from control_msgs.action import FollowJointTrajectory
+from control_msgs.msg import JointTolerance as Message
+from control_msgs.srv import QueryTrajectoryState
+from rclpy.serialization import serialize_message
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from arm_control.controllers.joint_trajectory.goals import ErrorCode, GoalResult, JointTolerance
+from arm_control.controllers.joint_trajectory.ros_serialized_goals import taken_goal
 from arm_control.controllers.joint_trajectory.serialized import read_trajectory
 from arm_control.controllers.joint_trajectory.state import (
     Feedback,
@@ -36,17 +43,11 @@ def times():
 
 
 def test_seconds_of_negative_durations(times):
-    from builtin_interfaces.msg import Duration
-
     assert times.seconds_of(Duration(sec=-1, nanosec=0)) == -1.0
     assert times.seconds_of(Duration(sec=-1, nanosec=500_000_000)) == -0.5
 
 
 def test_a_trajectory():
-    from builtin_interfaces.msg import Duration
-    from rclpy.serialization import serialize_message
-    from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-
     message = JointTrajectory(joint_names=["j1", "j0"])
     message.header.stamp.sec, message.header.stamp.nanosec = 3, 250_000_000
     message.points = [
@@ -67,12 +68,6 @@ def test_a_trajectory():
 
 
 def test_a_goal_with_tolerances(messages):
-    from builtin_interfaces.msg import Duration
-    from control_msgs.action import FollowJointTrajectory
-    from control_msgs.msg import JointTolerance as Message
-
-    from arm_control.controllers.joint_trajectory.ros_serialized_goals import taken_goal
-
     goal = FollowJointTrajectory.Goal(
         path_tolerance=[Message(name="j0", position=0.1, velocity=0.2, acceleration=0.3)],
         goal_tolerance=[Message(name="j1", position=-1.0)],
@@ -126,16 +121,12 @@ def test_a_duration_is_as_long_as_it_can_be(times, time_s, parts):
 
 
 def test_an_answer_of_a_controller_without_motion_has_no_names(messages):
-    from control_msgs.srv import QueryTrajectoryState
-
     response = QueryTrajectoryState.Response()
     messages.fill_query_response(response, ("j0",), QueriedState("asleep", np.empty((3, 0))))
     assert (response.success, response.message, list(response.name)) == (False, "asleep", [])
 
 
 def test_an_answer_with_motion(messages):
-    from control_msgs.srv import QueryTrajectoryState
-
     response = QueryTrajectoryState.Response()
     messages.fill_query_response(response, ("j0",), QueriedState("", np.array([[1.0], [2], [3]])))
     assert response.success

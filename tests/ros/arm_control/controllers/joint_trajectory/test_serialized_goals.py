@@ -3,24 +3,23 @@
 from typing import Any
 
 import pytest
+from builtin_interfaces.msg import Duration
+from control_msgs.action import FollowJointTrajectory
+from control_msgs.msg import JointTolerance
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from unique_identifier_msgs.msg import UUID
+
+import arm_control.controllers.joint_trajectory.ros_serialized_goals
 
 pytestmark = pytest.mark.workaround("serialized_goals")
 
 
 @pytest.fixture
 def goals():
-    import arm_control.controllers.joint_trajectory.ros_serialized_goals
-
     return arm_control.controllers.joint_trajectory.ros_serialized_goals
 
 
 def make_request(names: list[str], sizes: list[int]) -> Any:
-    from builtin_interfaces.msg import Duration
-    from control_msgs.action import FollowJointTrajectory
-    from control_msgs.msg import JointTolerance
-    from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-    from unique_identifier_msgs.msg import UUID
-
     points = [
         JointTrajectoryPoint(
             positions=[float(i)] * size,
@@ -61,8 +60,6 @@ def test_waypoints_stay_bytes_and_the_rest_is_a_message(goals, names, sizes):
 
 def test_the_installed_rclpy_supports_it(goals):
     """Otherwise a large goal would stop the control loop as long as rclpy converts it."""
-    from control_msgs.action import FollowJointTrajectory
-
     action_type = goals.serializing_action_type()
     assert action_type is not FollowJointTrajectory
     assert action_type.Feedback is FollowJointTrajectory.Feedback
@@ -70,8 +67,6 @@ def test_the_installed_rclpy_supports_it(goals):
 
 @pytest.mark.parametrize("fault", [OSError, AttributeError, ValueError])
 def test_where_it_cannot_goals_are_taken_as_messages(goals, monkeypatch, fault):
-    from control_msgs.action import FollowJointTrajectory
-
     def refuse(_self: Any) -> None:
         raise fault("not there")
 
