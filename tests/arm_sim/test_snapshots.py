@@ -7,7 +7,7 @@ from robots import CAN, control, pendulum, sensor
 from arm_control.controllers.goals import GoalOutcome
 from arm_control.errors import StateError
 from arm_gazebo.errors import RequestError
-from arm_sim import CallError, GoalError, JointTrajectory, Simulation
+from arm_sim import CallError, JointTrajectory, Simulation
 
 FOLLOWER = "joint_trajectory_controller"
 NOISE = """<always_on>1</always_on><imu><linear_acceleration><x><noise type='gaussian'>
@@ -48,17 +48,6 @@ def test_a_restored_simulation_goes_on_to_the_bit_with_its_goal():
         assert not goal.done
         assert course(sim) == first
         assert goal.result.outcome is GoalOutcome.SUCCEEDED
-
-
-def test_a_goal_that_the_state_does_not_have_is_aborted():
-    with follower() as sim:
-        here = sim.save()
-        goal = sim[FOLLOWER].follow(JointTrajectory([0.5], [[0.3, 0.4, -0.2, 0.1]]))
-        sim.run(0.2)
-        sim.restore(here)
-        with pytest.raises(GoalError, match="restored to a snapshot without this goal"):
-            _ = goal.result
-        sim.follow(FOLLOWER, JointTrajectory([0.2], [[0.1, 0.1, 0.1, 0.1]]))
 
 
 def test_things_come_and_go_with_the_state(sim):

@@ -174,28 +174,6 @@ def test_changed_parameters_repeat(recorded, replayed, parts):
     assert replayed(run.finish()).difference is None
 
 
-def test_the_first_period_that_differs_is_named_with_joint_and_size(recorded, replayed, parts):
-    run = recorded(parts.pendulum())
-    controller = run.start_controller("pos", FORWARD, joints=("j",))
-    run.run(10)
-    controller.offer([0.5])
-    run.run(10)
-
-    def change(record: RecordedInput) -> RecordedInput:
-        if record.method != "offer":
-            return record
-        return replace(record, arguments={"values": np.array([0.6])})
-
-    result = replayed(rewritten(run.finish(), change))
-    assert result.difference is not None
-    assert result.difference.period == 10
-    assert result.difference.time_s == pytest.approx(0.11)
-    assert result.periods == 10
-    lines = result.difference.lines
-    assert any("command j/position of /controller_manager: 0.6" in line for line in lines)
-    assert any("instead of 0.5" in line and "by 0.1" in line for line in lines)
-
-
 def test_an_input_that_was_refused_must_be_refused_again(recorded, replayed, parts):
     run = recorded(parts.pendulum())
     with pytest.raises(ControllerManagerError):

@@ -132,14 +132,6 @@ def test_a_snapshot_of_another_world_is_refused_and_changes_nothing(kept, arm, t
     assert other.robot.state.save() == before
 
 
-def test_a_snapshot_with_other_controllers_is_refused(kept, tmp_path):
-    file = str(tmp_path / "a.snapshot")
-    forward = ("position_controllers/JointGroupPositionController", {"joints": ["j0"]})
-    kept(forward=forward).snapshots.save(file)
-    _, message = refusal(lambda: kept().snapshots.restore(file))
-    assert "controller 'forward', which is not loaded; loaded: joint_states, arm" in message
-
-
 @pytest.mark.parametrize(
     ("content", "words"),
     [(b"", "is not a snapshot of arm sim save"), (b"arm snapshot 1\nnonsense", "is damaged")],

@@ -1,6 +1,5 @@
 """The command line: its arguments, its errors and its listings. Nothing starts here."""
 
-import os
 import re
 import sys
 
@@ -241,13 +240,6 @@ def test_a_refusal_is_on_stderr_with_exit_code_2(run_launch_py):
     done = run_launch_py("nowhere.launch.py")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("launch_py: no launch file nowhere.launch.py")
-
-
-def test_a_fifo_is_not_a_launch_file(run_launch_py, tmp_path):
-    os.mkfifo(tmp_path / "a.launch.py")
-    done = run_launch_py(str(tmp_path / "a.launch.py"))
-    assert done.returncode == 2
-    assert "a.launch.py is not a regular file" in done.stderr
 
 
 @pytest.mark.parametrize(("word", "replaces"), [("true", True), ("yes", True), ("false", False)])

@@ -213,16 +213,6 @@ def test_a_crash_loop_gives_up_and_says_so(launch):
     assert "giving up: it failed 3 times within 30 s" in launched.lines[-1]
 
 
-def test_a_time_out_says_what_is_missing(launch):
-    launched = launch(
-        "actions = [forever('a'), python('b', 'import signal; signal.pause()', "
-        "ready=LogLine('never', timeout_s=0.2))]"
-    )
-    assert launched.wait() == 1
-    assert "b is not ready after 0.2 s: no line in its output matches 'never'" in launched.lines[-1]
-    assert "[launch] a stopped" in launched.lines
-
-
 def test_a_required_process_gives_the_exit_code(launch):
     launched = launch(
         "actions = [forever('a'), python('b', 'raise SystemExit(5)', depends_on='a', "

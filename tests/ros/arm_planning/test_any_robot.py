@@ -57,12 +57,3 @@ def test_arm_move_finds_the_robot_in_its_namespace_and_ends_with_its_move_group(
         (move_group,) = launched.processes("'move_group'")
         move_group.send_signal(signal.SIGKILL)
         assert "no answer from /left/move_action: its server has ended" in program.fail()
-
-
-def test_arm_move_says_that_a_robot_without_joints_has_nothing_to_move(launch, tmp_path):
-    file = tmp_path / "block.urdf"
-    file.write_text(robot(link("block", box("visual", "collision"))))
-    launch(str(file), "planning:=true").wait_until_ready()
-    words = [sys.executable, "-m", "arm_cli", "move", "--state", "home"]
-    with closing(RosProgram(words)) as program:
-        assert "arm move: the robot has no group to move" in program.fail()

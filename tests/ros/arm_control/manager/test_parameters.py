@@ -221,23 +221,6 @@ def test_parameters_of_the_manager_that_make_no_sense_end_it_with_a_sentence(
     assert "Traceback" not in program.output
 
 
-def test_a_controller_that_cannot_be_started_ends_it_with_a_sentence(run_manager):
-    program = run_manager(
-        "--start",
-        "position_controller",
-        parameters={
-            "/**/controller_manager": {"ros__parameters": {"position_controller.type": POSITION}},
-            "/**/position_controller": {"ros__parameters": {"joints": ["j0", "j9"]}},
-        },
-        ros_arguments=("-r", "__ns:=/refused"),
-        wait=False,
-    )
-    assert program.wait() == 1
-    assert "the command interface 'j9/position' is not available" in program.output
-    assert "(available: j0/position, j0/velocity, j1/position" in program.output
-    assert "Traceback" not in program.output
-
-
 def test_a_controller_with_a_name_of_300_characters_is_refused(control):
     assert not control.load("a" * 300)
     assert control.states() == {}

@@ -75,25 +75,6 @@ def test_a_missing_file_ends_with_a_sentence(control, spawn):
     assert "cannot read parameter file '/no/such/file.yaml'" in output
 
 
-@pytest.mark.parametrize(
-    ("values", "reason", "states"),
-    [
-        ({"joints": "j2"}, "parameter 'joints' must be a list, not 'j2'", {}),
-        (
-            {"joints": ["j2"], "update_rate": -1},
-            "parameter 'update_rate' must not be negative, but is -1",
-            {"fresh": "unconfigured"},
-        ),
-    ],
-)
-def test_a_value_that_does_not_fit_is_refused_by_the_manager(
-    control, spawn, file, manager, values, reason, states
-):
-    spawn("fresh", "-p", file({"fresh": node(type=POSITION, **values)})).fail()
-    manager.wait_for_line(f"controller 'fresh': {reason}")
-    assert control.states() == states
-
-
 def test_ros_arguments_reach_the_controllers_node(control, spawn, client, get_parameter):
     spawn(
         "position_controller",

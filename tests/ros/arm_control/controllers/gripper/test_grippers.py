@@ -101,13 +101,3 @@ def test_parallel_reaches_its_goal_with_a_joint_state(control, grip_parallel):
     answer = grip_parallel(BEYOND_ITS_LIMIT).wait()
     assert (answer.status, answer.result.stalled) == (ABORTED, True)
     assert list(answer.result.state.effort) == [10.0]
-
-
-def test_parallel_takes_exactly_one_position(control, grip_parallel, manager):
-    control.start(PARALLEL)
-    assert not grip_parallel().accepted
-    assert not grip_parallel(0.1, 0.2).accepted
-    for count in (0, 2):
-        manager.wait_for_line(
-            f"Received action goal with wrong number of position values, expects 1, got {count}"
-        )
