@@ -31,6 +31,7 @@ class ServedGoal:
     Attributes:
         request: the goal's message.
         has_moved: whether the robot has moved for it.
+        is_cancelled: whether its client has cancelled it.
     """
 
     def __init__(self, handle: ServerGoalHandle, feedback: type[Any]) -> None:
@@ -39,7 +40,7 @@ class ServedGoal:
         self.has_moved = False
         self._feedback = feedback
         self._interrupted = threading.Event()
-        self._is_cancelled = False
+        self.is_cancelled = False
 
     def begin(self) -> None:
         """Let the executor serve it."""
@@ -55,7 +56,7 @@ class ServedGoal:
 
     def cancel(self) -> None:
         """Note that its client wants it to end."""
-        self._is_cancelled = True
+        self.is_cancelled = True
         self._interrupted.set()
 
     def stop(self) -> None:
@@ -66,16 +67,11 @@ class ServedGoal:
         """Return whether it is to end early. Any thread."""
         return self._interrupted.is_set()
 
-    @property
-    def is_cancelled(self) -> bool:
-        """Whether its client has cancelled it."""
-        return self._is_cancelled
-
     def ending(self, outcome: ExecutionOutcome) -> ExecutionOutcome:
         """Return how it ends: early if it is interrupted, whatever the outcome would be."""
         if not self.is_interrupted() or outcome.code is MoveItErrorCode.PREEMPTED:
             return outcome
-        return CANCELLED if self._is_cancelled else STOPPED
+        return CANCELLED if self.is_cancelled else STOPPED
 
     def wait(self, duration_s: float) -> None:
         """Wait, but no longer than until it is to end early."""
