@@ -29,29 +29,25 @@ def sliders(viewer: str) -> str:
 def generate_launch_description() -> LaunchDescription:
     """Return the state publisher, the source of joint states, the page and RViz."""
     share = FindPackageShare("arm_description")
+    table = {
+        "model": (
+            PathJoinSubstitution([share, "urdf", "arm.urdf.xacro"]),
+            "URDF or xacro file",
+            None,
+        ),
+        "model_args": ("", 'arguments of a xacro model: "a:=1 b:=2"', None),
+        "camera": (FRONT, "the arm's camera", [FRONT, "side", "none"]),
+        "viewer": (
+            "true",
+            "open the page in the browser; false: joint_state_publisher instead",
+            ["true", "false"],
+        ),
+    }
     return LaunchDescription(
         [
-            DeclareLaunchArgument(
-                "model",
-                default_value=PathJoinSubstitution([share, "urdf", "arm.urdf.xacro"]),
-                description="URDF or xacro file",
-            ),
-            DeclareLaunchArgument(
-                "model_args",
-                default_value="",
-                description='arguments of a xacro model: "a:=1 b:=2"',
-            ),
-            DeclareLaunchArgument(
-                "camera",
-                default_value=FRONT,
-                description="the arm's camera",
-                choices=[FRONT, "side", "none"],
-            ),
-            DeclareLaunchArgument(
-                "viewer",
-                default_value="true",
-                description="open the page in the browser; false: joint_state_publisher instead",
-                choices=["true", "false"],
+            *(
+                DeclareLaunchArgument(name, default_value=value, description=text, choices=choices)
+                for name, (value, text, choices) in table.items()
             ),
             IncludeLaunchDescription(
                 PythonLaunchDescriptionSource(

@@ -6,7 +6,6 @@ from contextlib import AbstractContextManager, contextmanager
 from itertools import count
 from typing import Any
 
-from arm_gazebo.faults.fault import Fault
 from arm_gazebo.faults.injector import FaultInjector
 from arm_gazebo.run.run import SimulationRun
 from arm_sim.cameras import Camera
@@ -28,11 +27,11 @@ class SimulationFaults(InjectedFaults):
     def __init__(
         self, run: SimulationRun, controllers: Controllers, find_camera: Callable[[str], Camera]
     ) -> None:
-        super().__init__(lambda: run.physics.time_s)
+        injector = FaultInjector(run)
+        super().__init__(lambda: run.physics.time_s, injector.begin, injector.end)
         self._run = run
         self._controllers = controllers
         self._find_camera = find_camera
-        self._injector = FaultInjector(run)
 
     def messages_dropped(
         self, controller: str, fraction: float = 1.0, seed: int = 0
@@ -84,15 +83,6 @@ class SimulationFaults(InjectedFaults):
                 yield
             finally:
                 camera.is_dark = False
-
-    @contextmanager
-    def _injected(self, fault: Fault) -> Iterator[None]:
-        self._injector.begin(fault)
-        with self.log.noted(str(fault)):
-            try:
-                yield
-            finally:
-                self._injector.end(fault)
 
     @contextmanager
     def _linked(self, how: str, controller: str, fault: LinkFault) -> Iterator[None]:

@@ -1,7 +1,6 @@
 """What all faults on demand share: those that a simulation injects into itself, and their log."""
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -56,15 +55,25 @@ class FaultLog:
             span.began_s = self._now_s()
 
 
-class InjectedFaults(ABC):
+Change = Callable[[Fault], None]
+
+
+class InjectedFaults:
     """Faults that a simulation injects into itself; each lasts as long as its `with` block.
 
     Attributes:
         log: the faults so far.
     """
 
-    def __init__(self, now_s: Callable[[], float]) -> None:
+    def __init__(
+        self,
+        now_s: Callable[[], float],
+        begin: Callable[[Fault], None],
+        end: Callable[[Fault], None],
+    ) -> None:
+        """Take what tells the time, and what begins and ends a fault in the simulation."""
         self.log = FaultLog(now_s)
+        self._begin, self._end = begin, end
 
     def joint_stalled(self, joint: str) -> AbstractContextManager[None]:
         """Make a joint stick where it is, whatever its drive does."""
@@ -108,6 +117,11 @@ class InjectedFaults(ABC):
         """Make each control period take this many seconds of wall time longer."""
         return self._injected(Fault(FaultKind.SLOW_TICK, amount=seconds))
 
-    @abstractmethod
-    def _injected(self, fault: Fault) -> AbstractContextManager[None]:
-        """Return the context in which the simulation has the fault; it is noted in the log."""
+    @contextmanager
+    def _injected(self, fault: Fault) -> Iterator[None]:
+        self._begin(fault)
+        with self.log.noted(str(fault)):
+            try:
+                yield
+            finally:
+                self._end(fault)

@@ -58,6 +58,12 @@ class Fault:
     def __str__(self) -> str:
         return f"{self.target} {self.kind.value}".strip().replace("_", " ")
 
+    @property
+    def text(self) -> str:
+        """What `read_fault` reads."""
+        words = (self.kind.value, self.target, self.amount, self.seed)
+        return " ".join(str(word) for word in words if word)
+
 
 def read_fault(text: str) -> Fault:
     """Return the fault that a text describes.

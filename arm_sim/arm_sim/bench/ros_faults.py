@@ -13,7 +13,7 @@ from typing import Any
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 
-from arm_gazebo.faults.fault import Fault, FaultKind
+from arm_gazebo.faults.fault import Fault
 from arm_sim.bench.processes import LoggedProcess
 from arm_sim.bench.ros_connection import RosConnection
 from arm_sim.errors import BenchError
@@ -35,11 +35,15 @@ class RosFaults(InjectedFaults):
         self, connection: RosConnection, launch: LoggedProcess, now_s: Callable[[], float]
     ) -> None:
         """Take a launch, and the connection of a node in its domain."""
-        super().__init__(now_s)
+        super().__init__(
+            now_s,
+            lambda fault: self._set_injected([*self._present, fault]),
+            lambda fault: self._set_injected([one for one in self._present if one != fault]),
+        )
         self.has_killed = False
         self._connection = connection
         self._launch = launch
-        self._texts: list[str] = []
+        self._present: list[Fault] = []
 
     @contextmanager
     def process_killed(self, name: str) -> Iterator[None]:
@@ -108,28 +112,15 @@ class RosFaults(InjectedFaults):
         fault = LinkFault(doubled=fraction, again_s=after_s, seed=seed)
         return self._relay("doubled", topic, to, fault)
 
-    @contextmanager
-    def _injected(self, fault: Fault) -> Iterator[None]:
-        words = [fault.kind.value, fault.target]
-        if fault.amount:
-            seed = str(fault.seed) if fault.kind is FaultKind.SENSOR_NOISY else ""
-            words += [repr(fault.amount), seed]
-        text = " ".join(filter(None, words))
-        self._set_injected([*self._texts, text])
-        with self.log.noted(str(fault)):
-            try:
-                yield
-            finally:
-                self._set_injected([other for other in self._texts if other != text])
-
-    def _set_injected(self, faults: list[str]) -> None:
-        value = ParameterValue(type=ParameterType.PARAMETER_STRING_ARRAY, string_array_value=faults)
+    def _set_injected(self, faults: list[Fault]) -> None:
+        texts = [fault.text for fault in faults]
+        value = ParameterValue(type=ParameterType.PARAMETER_STRING_ARRAY, string_array_value=texts)
         request = SetParameters.Request(parameters=[Parameter(name="faults", value=value)])
         answer = self._connection.call(f"/{SIMULATION}/set_parameters", SetParameters, request)
         (result,) = answer.results
         if not result.successful:
             raise BenchError(result.reason)
-        self._texts = faults
+        self._present = faults
 
     def _pids(self, name: str) -> list[int]:
         processes = self._launch.descendants()

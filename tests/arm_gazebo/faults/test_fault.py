@@ -17,6 +17,7 @@ from arm_gazebo.faults.fault import Fault, FaultKind, read_fault
 )
 def test_a_text_is_a_fault(text, fault):
     assert read_fault(text) == fault
+    assert fault.text == text
 
 
 @pytest.mark.parametrize(
