@@ -55,8 +55,12 @@ def open_file(path: Path | str, max_bytes: int | None = None) -> BinaryIO:
 def read_bytes(path: Path | str, max_bytes: int) -> bytes:
     """Return the content of a regular file; raises like `open_file`."""
     with open_file(path, max_bytes) as file:
-        # Files below /proc report a size of 0, and some of them never end.
-        content = file.read(max_bytes + 1)
+        size = os.fstat(file.fileno()).st_size
+        # Not up to the limit at once: Python would reserve that much memory first.
+        content = file.read(size + 1)
+        if len(content) > size:
+            # Files below /proc report a size of 0, and some of them never end.
+            content += file.read(max_bytes + 1 - len(content))
     if len(content) > max_bytes:
         raise _too_large(Path(path), max_bytes)
     return content

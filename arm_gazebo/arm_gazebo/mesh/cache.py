@@ -7,6 +7,7 @@ import math
 import os
 import struct
 import tempfile
+import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -20,18 +21,21 @@ from arm_gazebo.mesh.part import MeshPart
 
 logger = logging.getLogger(__name__)
 
-VERSION = "4"
+VERSION = "5"
 """Part of every key. Raise it when the same file is parsed to a different result."""
 MAX_CACHE_BYTES = 1_000_000_000
 """Limit on the size of all entries; the least recently used are deleted first."""
 SUFFIXES = (".mesh", ".npz")
 """What names of entries end with; the second one is that of earlier versions."""
 
-_DIGEST_BYTES = 24
-"""An entry begins with a digest of the rest of it, so that no damaged one is used."""
+_CHECKSUM = struct.Struct("<I4x")
+"""An entry begins with the CRC-32 of the rest of it, so that no damaged one is used. It is padded
+so that the numbers after it are aligned.
+"""
 _SIZES = struct.Struct("<5q4d")
 """The start of a part: its numbers of vertices, faces and hull vertices, of triangles and different
-ones; its colour, NaN for none. The arrays follow. NumPy's own format takes ten times as long.
+ones; its colour, NaN for none. The arrays follow, without the hull if it is all vertices. NumPy's
+own format takes ten times as long.
 """
 _TYPES = (np.dtype("<f8"), np.dtype("<i4"), np.dtype("<f8"))
 
@@ -68,9 +72,7 @@ class MeshCache:
         path = self._path(key)
         try:
             content = path.read_bytes()
-            if _digest(content[_DIGEST_BYTES:]) != content[:_DIGEST_BYTES]:
-                raise MeshFileError("it is damaged")
-            parts = tuple(_parts(content))
+            parts = tuple(_parts(_undamaged(content)))
             # The time of the last use decides which entry is deleted first.
             os.utime(path)
         except FileNotFoundError:
@@ -85,7 +87,7 @@ class MeshCache:
         try:
             self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             content = b"".join(map(_bytes_of, parts))
-            self._write(key, _digest(content) + content)
+            self._write(key, _CHECKSUM.pack(zlib.crc32(content)) + content)
             self._make_room()
         except (OSError, MeshFileError) as error:
             logger.debug("cannot cache a mesh in %s: %s", self._folder, error)
@@ -117,10 +119,6 @@ class MeshCache:
         return self._folder / f"{key}{SUFFIXES[0]}"
 
 
-def _digest(content: bytes) -> bytes:
-    return hashlib.blake2b(content, digest_size=_DIGEST_BYTES).digest()
-
-
 def _bytes_of(part: MeshPart) -> bytes:
     """Return a part as it is stored.
 
@@ -128,7 +126,8 @@ def _bytes_of(part: MeshPart) -> bytes:
         MeshFileError: it cannot be drawn.
     """
     part.drawn.check()
-    arrays = (part.drawn.vertices, part.drawn.faces, part.hull)
+    hull = part.hull[:0] if part.hull is part.drawn.vertices else part.hull
+    arrays = (part.drawn.vertices, part.drawn.faces, hull)
     rgba = (math.nan,) * 4 if part.drawn.rgba is None else part.drawn.rgba
     stored = zip(_TYPES, arrays, strict=True)
     return _SIZES.pack(*map(len, arrays), part.triangles, part.different, *rgba) + b"".join(
@@ -136,9 +135,21 @@ def _bytes_of(part: MeshPart) -> bytes:
     )
 
 
-def _parts(content: bytes) -> Iterator[MeshPart]:
+def _undamaged(content: bytes) -> memoryview:
+    """Return an entry without its checksum.
+
+    Raises:
+        MeshFileError: the checksum is not that of the rest.
+    """
+    rest = memoryview(content)[_CHECKSUM.size :]
+    if content[: _CHECKSUM.size] != _CHECKSUM.pack(zlib.crc32(rest)):
+        raise MeshFileError("it is damaged")
+    return rest
+
+
+def _parts(content: memoryview) -> Iterator[MeshPart]:
     """Yield the parts of an entry; their arrays are read-only."""
-    at = _DIGEST_BYTES
+    at = 0
     while at < len(content):
         *sizes, triangles, different, red, green, blue, alpha = _SIZES.unpack_from(content, at)
         at += _SIZES.size
@@ -148,4 +159,5 @@ def _parts(content: bytes) -> Iterator[MeshPart]:
             at += arrays[-1].nbytes
         vertices, faces, hull = arrays
         rgba = None if math.isnan(red) else (red, green, blue, alpha)
-        yield MeshPart(MeshData(vertices, faces, rgba), hull, triangles, different)
+        drawn = MeshData(vertices, faces, rgba)
+        yield MeshPart(drawn, hull if len(hull) else vertices, triangles, different)

@@ -120,18 +120,19 @@ class MeshLibrary:
         self._spec.mesh(name).info = f"file {path}" + (f", {user}" if user else "")
 
     def _add_drawn(self, stem: str, part: MeshPart) -> str:
-        return self._add(stem, part.drawn.vertices, part.drawn.faces.ravel())
+        return self._add(stem, part.drawn.vertices, part.drawn.faces)
 
     def _add_hull(self, stem: str, part: MeshPart) -> str:
         # MuJoCo draws a mesh without triangles as its hull.
-        return self._add(f"{stem}_hull", part.hull, np.empty(0, np.int32))
+        return self._add(f"{stem}_hull", part.hull, np.empty((0, 3), np.int32))
 
     def _add(self, stem: str, vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> str:
         name = self._free_name(stem)
         self._spec.add_mesh(
             name=name,
-            uservert=vertices.ravel(),
-            userface=faces,
+            # The bindings take an array element by element, which takes twice as long as a list.
+            uservert=vertices.ravel().tolist(),
+            userface=faces.ravel().tolist(),
             # Links have their own inertia; this type also accepts open and flat meshes.
             inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
         )

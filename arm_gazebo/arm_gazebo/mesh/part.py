@@ -61,8 +61,9 @@ class MeshPart:
         part = self
         if scale != UNSCALED:
             part = replace(self, drawn=self.drawn.scaled(scale), hull=self.hull * scale)
-        farthest = float(np.abs(part.hull).max())
-        size = float(np.ptp(part.hull, axis=0).max())
+        low, high = part.bounds
+        farthest = float(max(-low.min(), high.max()))
+        size = float((high - low).max())
         if not farthest < MAX_EXTENT_M:
             raise MeshError(
                 f"it extends {farthest:.3g} m from its origin; the limit is {MAX_EXTENT_M:g} m"

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from arm_gazebo.build_report import BuildReport
-from arm_gazebo.robot.floor_contact import lowest_points
+from arm_gazebo.robot.floor_contact import lowest_points, touching_geoms
 from arm_node.frozen import frozen
 
 WORLD_CONTYPE = 1
@@ -200,13 +200,15 @@ def _deepest(
 ) -> Depths:
     """Return the overlaps of a robot's bodies with each other, or with everything else."""
     depths: Depths = {}
-    for contact in data.contact:
-        pair = (int(model.geom_bodyid[geom]) for geom in contact.geom)
+    if not data.ncon:
+        return depths
+    pairs = model.geom_bodyid[data.contact.geom].tolist()
+    for pair, distance in zip(pairs, data.contact.dist.tolist(), strict=True):
         body, other = sorted(pair, key=lambda number: (number not in bodies, number))
         if body not in bodies or (other in bodies) is not inside:
             continue
-        if contact.dist < -beyond_m:
-            depths[body, other] = max(depths.get((body, other), 0.0), -float(contact.dist))
+        if distance < -beyond_m:
+            depths[body, other] = max(depths.get((body, other), 0.0), -distance)
     return depths
 
 
@@ -225,7 +227,7 @@ def _own_overlaps(model: mujoco.MjModel, data: mujoco.MjData, names: Mapping[int
     finally:
         for mask, values in zip(masks, before, strict=True):
             mask[:] = values
-    jointed = set(jointed_pairs(model, sorted(names)))
+    jointed = set(jointed_pairs(model, sorted(names))) if depths else ()
     return {pair: depth for pair, depth in depths.items() if pair not in jointed}
 
 
@@ -233,21 +235,17 @@ def _sunk(
     model: mujoco.MjModel, data: mujoco.MjData, names: Mapping[int, str]
 ) -> Iterator[tuple[int, float]]:
     """Yield the bolted-down bodies that extend below a level floor, and by how much in m."""
-    floors = [
-        float(data.geom_xpos[geom, 2])
-        for geom in range(model.ngeom)
-        if model.geom_type[geom] == PLANE
-        and (model.geom_contype[geom] or model.geom_conaffinity[geom])
-        and data.geom_xmat[geom, 8] > LEVEL
-    ]
-    if not floors:
+    touching = (model.geom_contype | model.geom_conaffinity) != 0
+    level = (model.geom_type == PLANE) & touching & (data.geom_xmat[:, 8] > LEVEL)
+    if not level.any():
         return
+    floor = float(data.geom_xpos[level, 2].max())
     depths: dict[int, float] = {}
-    for root in {int(model.body_rootid[body]) for body in names}:
-        for geom, height in lowest_points(model, data, root).items():
-            body = int(model.geom_bodyid[geom])
-            if model.body_weldid[body] == 0:
-                depths[body] = max(depths.get(body, 0.0), max(floors) - height)
+    bolted = np.zeros(model.nbody, bool)
+    bolted[[*names]] = model.body_weldid[[*names]] == 0
+    for geom, height in lowest_points(model, data, touching_geoms(model, bolted)).items():
+        body = int(model.geom_bodyid[geom])
+        depths[body] = max(depths.get(body, 0.0), floor - height)
     yield from ((body, depth) for body, depth in depths.items() if depth > SHALLOW_M)
 
 

@@ -1,6 +1,6 @@
 """How a free robot stands on the floor: its height, and whether it is balanced."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable
 
 import mujoco
 import numpy as np
@@ -13,6 +13,8 @@ ON_FLOOR_M = 0.002
 """Points this close to the lowest one carry the robot."""
 RIM_POINTS = 16
 DIRECTIONS = 64
+CORNERS = np.array([*np.ndindex(2, 2, 2)]) * 2.0 - 1.0
+"""Of a box whose half sizes are 1."""
 
 
 class FloorContact:
@@ -24,7 +26,7 @@ class FloorContact:
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, root: int) -> None:
         points = [
             data.geom_xpos[geom] + _extremes(model, geom, rotation) @ rotation.T
-            for geom in _touching_geoms(model, root)
+            for geom in touching_geoms(model, model.body_rootid == root)
             for rotation in [data.geom_xmat[geom].reshape(3, 3)]
         ]
         self._points = np.concatenate(points) if points else np.zeros((0, 3))
@@ -46,23 +48,23 @@ class FloorContact:
         return float((-((feet - self._centre) @ directions).max(axis=0)).max())
 
 
-def lowest_points(model: mujoco.MjModel, data: mujoco.MjData, root: int) -> dict[int, float]:
-    """Return the lowest z in m of each collision geom in a body's subtree.
-
-    The positions of geoms in `data` are valid.
-    """
+def lowest_points(
+    model: mujoco.MjModel, data: mujoco.MjData, geoms: Iterable[int]
+) -> dict[int, float]:
+    """Return the lowest z in m of each geom; the positions of geoms in `data` are valid."""
     heights: dict[int, float] = {}
-    for geom in _touching_geoms(model, root):
+    for geom in geoms:
         rotation = data.geom_xmat[geom].reshape(3, 3)
         points = data.geom_xpos[geom] + _extremes(model, geom, rotation) @ rotation.T
         heights[geom] = float(points[:, 2].min())
     return heights
 
 
-def _touching_geoms(model: mujoco.MjModel, root: int) -> Iterator[int]:
-    for geom in range(model.ngeom):
-        if model.body_rootid[model.geom_bodyid[geom]] == root and model.geom_contype[geom]:
-            yield geom
+def touching_geoms(model: mujoco.MjModel, bodies: NDArray[np.bool_]) -> list[int]:
+    """Return the collision geoms of those bodies that a mask, shape (nbody,), chooses."""
+    chosen = bodies[model.geom_bodyid] & (model.geom_contype != 0)
+    geoms: list[int] = np.flatnonzero(chosen).tolist()
+    return geoms
 
 
 def _extremes(model: mujoco.MjModel, geom: int, rotation: Array) -> Array:
@@ -87,4 +89,4 @@ def _extremes(model: mujoco.MjModel, geom: int, rotation: Array) -> Array:
         )
         rim = size[0] * np.array([np.cos(angles), np.sin(angles), np.zeros(RIM_POINTS)]).T
         return (ends[:, None] + rim[None]).reshape(-1, 3)
-    return np.array([size * signs for signs in np.ndindex(2, 2, 2)]) * 2 - size
+    return CORNERS * size

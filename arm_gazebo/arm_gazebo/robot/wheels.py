@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from arm_gazebo.build_report import BuildReport
 from arm_gazebo.mjcf.names import free_name
-from arm_gazebo.robot.floor_contact import lowest_points
+from arm_gazebo.robot.floor_contact import lowest_points, touching_geoms
 from arm_node.frozen import frozen
 
 Array = NDArray[np.float64]
@@ -103,12 +103,9 @@ def _find(model: mujoco.MjModel, qpos: Array, bodies: frozenset[int]) -> _Shapes
     data = mujoco.MjData(model)
     data.qpos[:] = qpos
     mujoco.mj_kinematics(model, data)
-    heights = {
-        geom: height
-        for root in free
-        for geom, height in lowest_points(model, data, root).items()
-        if int(model.geom_bodyid[geom]) in bodies
-    }
+    standing = np.zeros(model.nbody, bool)
+    standing[[body for body in bodies if model.body_rootid[body] in free]] = True
+    heights = lowest_points(model, data, touching_geoms(model, standing))
     floor = min(heights.values(), default=0.0)
     near = sorted(geom for geom, height in heights.items() if height < floor + NEAR_FLOOR_M)
     wheels = tuple(geom for geom in near if _is_wheel(model, data, geom))
