@@ -3,7 +3,7 @@
 The launch argument, the node's parameter, the keyword of the library and the manual's tables come
 from it:
 
-    @dataclass(frozen=True, slots=True, kw_only=True)
+    @frozen(kw_only=True)
     class PhysicsSettings:
         hold_joints: bool = setting(True, "joints that no controller claims hold their position")
 

@@ -28,28 +28,34 @@ if TYPE_CHECKING:
     from arm_sim.snapshots import SavedState as SavedState
     from arm_sim.trajectory import JointTrajectory as JointTrajectory
 
-MUJOCO_GL = "MUJOCO_GL"
+_IMPORT_ENVIRONMENT = {
+    # A window library would double MuJoCo's import time.
+    "MUJOCO_GL": "disabled",
+    # The threads of NumPy's OpenBLAS wait awake before they sleep: for 2^20 cycles, less than a
+    # millisecond. By default each takes a tenth of a second of a processor at the start.
+    "OPENBLAS_THREAD_TIMEOUT": "20",
+}
+"""Variables that MuJoCo and NumPy read when they are imported."""
 
 _import_name, __dir__ = on_first_use(__name__)
 
 
 def __getattr__(name: str) -> Any:
     # Importing all of them takes as long as a start.
-    with _without_window_library(), imports_kept():
+    with _import_environment(), imports_kept():
         return _import_name(name)
 
 
 @contextmanager
-def _without_window_library() -> Iterator[None]:
-    """Keep MuJoCo from loading a window library, which would double its import time.
+def _import_environment() -> Iterator[None]:
+    """Set the variables of a quick import, for its time only.
 
-    The variable is MuJoCo's; a program that imports MuJoCo first makes its own choice.
+    A program that sets one of them, or imports MuJoCo and NumPy first, makes its own choice.
     """
-    if MUJOCO_GL in os.environ:
-        yield
-        return
-    os.environ[MUJOCO_GL] = "disabled"
+    added = {name: value for name, value in _IMPORT_ENVIRONMENT.items() if name not in os.environ}
+    os.environ.update(added)
     try:
         yield
     finally:
-        os.environ.pop(MUJOCO_GL, None)
+        for name in added:
+            os.environ.pop(name, None)

@@ -5,13 +5,14 @@ add what only a program gives.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY
 from functools import wraps
 from inspect import Parameter, signature
 from os import fspath
 from typing import Any, Concatenate, ParamSpec, TypeVar
 
 from arm_gazebo.run.settings import PhysicsSettings
+from arm_node.frozen import frozen
 from arm_node.names import describe_known
 from arm_node.setting import settings_of
 from arm_sim.errors import ArgumentsError
@@ -22,7 +23,7 @@ SelfT = TypeVar("SelfT")
 ArgumentsT = TypeVar("ArgumentsT")
 
 
-@dataclass(frozen=True)
+@frozen
 class SimulationArguments(PhysicsSettings):
     """The arguments of `Simulation`, which describes them, and the settings of the physics."""
 

@@ -63,6 +63,34 @@ class Single:
     x: float
 
 
+@frozen(kw_only=True)
+class ByName:
+    """A class whose values have names only."""
+
+    z: float = 0.0
+
+
+@frozen
+class Placed(ByName):
+    """A class that adds to them a value without a default."""
+
+    place: str
+
+
+@dataclass(frozen=True)
+class Unslotted:
+    """A dataclass of a user, without slots."""
+
+    w: float = 0.0
+
+
+@frozen
+class FromUnslotted(Unslotted):
+    """A class that derives from one of `dataclasses`."""
+
+    v: float = 0.0
+
+
 @frozen
 class Named(Point):
     """A point with a name, which derives from another of these classes."""
@@ -154,7 +182,9 @@ def test_the_module_dataclasses_knows_it():
     assert names == [each.name for each in dataclasses.fields(THEIRS)]
     assert OURS.__match_args__ == THEIRS.__match_args__
     assert dataclasses.replace(Point(1.0), y=2.0) == Point(1.0, 2.0)
-    assert [*inspect.signature(OURS).parameters] == [*inspect.signature(THEIRS).parameters]
+    ours, theirs = inspect.signature(OURS), inspect.signature(THEIRS)
+    assert [*ours.parameters] == [*theirs.parameters]
+    assert ours.return_annotation is theirs.return_annotation
     assert OURS.__doc__ == "A sample."
 
 
@@ -164,6 +194,28 @@ def test_the_module_dataclasses_knows_it():
 def test_copies_are_equal(copied):
     assert copied(Point(1.0, 2.0)) == Point(1.0, 2.0)
     assert copied(Named(1.0, 2.0, "a")) == Named(1.0, 2.0, "a")
+
+
+def test_values_of_a_derived_class_come_after_those_with_names_only():
+    placed = Placed("here", z=1.0)
+    assert (placed.z, placed.place) == (1.0, "here")
+    assert repr(placed) == "Placed(z=1.0, place='here')"
+    assert (placed, hash(placed)) == (Placed("here", z=1.0), hash((1.0, "here")))
+    assert not hasattr(placed, "__dict__")
+    with pytest.raises(TypeError, match="takes 2 positional arguments"):
+        Placed("here", 1.0)
+    for name in ("z", "place", "other"):
+        with pytest.raises(FrozenInstanceError):
+            setattr(placed, name, 2.0)
+        with pytest.raises(FrozenInstanceError):
+            delattr(placed, name)
+
+
+def test_it_may_derive_from_a_dataclass_without_slots():
+    derived = FromUnslotted(1.0, 2.0)
+    assert (derived.w, derived.v) == (1.0, 2.0)
+    with pytest.raises(FrozenInstanceError):
+        derived.w = 3.0
 
 
 @pytest.mark.parametrize("cls", [Named, Coloured])

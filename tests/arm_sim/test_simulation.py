@@ -168,6 +168,31 @@ def test_it_needs_no_ros_and_no_window_library():
     assert done.stdout == "[] None\n"
 
 
+THREADS_OF_NUMPY = """
+import os, sys
+name = "OPENBLAS_THREAD_TIMEOUT"
+class Watch:
+    def find_spec(imported, *_):
+        if imported == "numpy":
+            print(os.environ.get(name), end=" ")
+sys.meta_path.insert(0, Watch)
+from arm_sim import Simulation
+print(os.environ.get(name))
+"""
+
+
+@pytest.mark.parametrize(("own", "said"), [(None, "20 None\n"), ("8", "8 8\n")])
+def test_threads_of_numpy_soon_sleep_unless_the_user_says_otherwise(own, said):
+    environment = {name: value for name, value in os.environ.items() if "OPENBLAS" not in name}
+    if own is not None:
+        environment["OPENBLAS_THREAD_TIMEOUT"] = own
+    command = [sys.executable, "-c", THREADS_OF_NUMPY]
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=True, timeout=120, env=environment
+    )
+    assert done.stdout == said
+
+
 def failing(time_s: float, period_s: float) -> None:
     raise ZeroDivisionError("by nothing")
 

@@ -377,6 +377,7 @@ def _sample(
     others[dofs, range(len(dofs))] -= 1.0
     followers = np.flatnonzero(others.any(axis=1))
     ratios = others[followers]
+    driven = np.ix_(dofs, dofs)
     inertia, own, gravity = np.zeros((len(dofs),) * 2), np.zeros(len(dofs)), np.zeros(len(dofs))
     data.qpos[:] = qpos
     for pose in random_poses(joints, POSES):
@@ -390,10 +391,12 @@ def _sample(
         if model.ngravcomp:
             mujoco.mj_passive(model, data)
             efforts -= data.qfrc_gravcomp
-        columns = full[:, dofs] + full[:, followers] @ ratios
-        felt = columns[dofs] + ratios.T @ columns[followers]
+        felt = full[driven]
+        np.maximum(own, felt.diagonal(), out=own)
+        if len(followers):
+            columns = full[:, dofs] + full[:, followers] @ ratios
+            felt = columns[dofs] + ratios.T @ columns[followers]
         np.maximum(inertia, np.abs(felt), out=inertia)
-        np.maximum(own, full[dofs, dofs], out=own)
         np.maximum(gravity, np.abs(coupling.T @ efforts), out=gravity)
     return inertia, own, gravity
 

@@ -2,11 +2,12 @@
 
 import os
 from array import array
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from arm_gazebo.mjcf.memory_limit import SPAWN_LIMIT, WORLD_LIMIT, MemoryLimit
+from arm_node.frozen import frozen
 from arm_node.parameter_values import (
     NumberReader,
     ParameterValueError,
@@ -50,7 +51,7 @@ def _read_folders(value: object) -> tuple[Path, ...]:
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@frozen(kw_only=True)
 class RobotSettings:
     """The user's settings for one robot.
 
@@ -120,7 +121,7 @@ _read_gain = NumberReader("a number from 0 to 1", least=0.0, most=1.0)
 _SWITCH = ("true", "false")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@frozen(kw_only=True)
 class PhysicsSettings:
     """What is simulated, and how; with ROS or without."""
 
@@ -150,7 +151,7 @@ class PhysicsSettings:
     seed: int = setting(0, "seed of the noise of sensors and cameras", read_integer, launches=False)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@frozen(kw_only=True)
 class SimulationSettings(PhysicsSettings):
     """The user's settings for one simulation.
 
