@@ -167,7 +167,7 @@ def _text_read_once() -> Iterator[None]:
     """Spare xacro its lexer for texts without a `$`, and the compiler for expressions it has seen.
 
     Four of five texts are plain, and xacro returns them as they are; to look through them takes a
-    seventh of the time. Each use of a macro has the same expressions; to compile them takes a tenth.
+    seventh of the time. Each use of a macro has the same expressions; compiling them takes a tenth.
     """
     import xacro
 

@@ -52,6 +52,7 @@ class MeshLibrary:
         self._resources = resources
         self._cache = cache
         self._paths: dict[str, Path] = {}
+        self._folders: dict[Path, Path] = {}
         self._parts: dict[Path, tuple[MeshPart, ...]] = {}
         self._unusable: dict[Path, str] = {}
         self._scaled: dict[tuple[Path, Scale], tuple[MeshPart, ...]] = {}
@@ -148,10 +149,18 @@ class MeshLibrary:
     def _resolve(self, mesh: Mesh) -> Path:
         if mesh.uri not in self._paths:
             try:
-                self._paths[mesh.uri] = self._resources.find(mesh.uri).resolve()
+                self._paths[mesh.uri] = self._without_links(self._resources.find(mesh.uri))
             except ResourceNotFoundError as error:
                 raise MeshError(str(error)) from error
         return self._paths[mesh.uri]
+
+    def _without_links(self, path: Path) -> Path:
+        """Return what `path.resolve()` returns; the folder of many meshes is followed once."""
+        if path.is_symlink() or path.name == "..":
+            return path.resolve()
+        if path.parent not in self._folders:
+            self._folders[path.parent] = path.parent.resolve()
+        return self._folders[path.parent] / path.name
 
     def _read(self, path: Path) -> tuple[MeshPart, ...]:
         if path not in self._parts and path not in self._unusable:

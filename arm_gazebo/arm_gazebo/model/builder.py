@@ -4,6 +4,7 @@ MuJoCo's own URDF importer drops visuals, cameras and limits and fuses links. Th
 them, and reports what it cannot keep.
 """
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -21,6 +22,9 @@ from arm_gazebo.robot.gazebo_tags import GazeboTags
 from arm_gazebo.robot.part import DEFAULT_OPTIONS, NO_TAGS, BuildOptions, RobotInWorld, RobotPart
 from arm_gazebo.sensors.camera import CameraSensor
 from arm_gazebo.sensors.link_sensor import LinkSensor
+
+TOO_FEW_TO_SHARE = 3
+"""Number of processors up to which MuJoCo's compiler has one thread for meshes, or none."""
 
 
 def build_model(
@@ -112,6 +116,9 @@ def _set_physics(spec: mujoco.MjSpec, step_s: float) -> None:
     spec.compiler.discardvisual = False
     spec.compiler.balanceinertia = False
     spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_AUTO
+    # Meshes are compiled by half as many threads as there are processors. A single one only takes
+    # its start and its own memory.
+    spec.compiler.usethread = (os.cpu_count() or 1) > TOO_FEW_TO_SHARE
 
 
 def _compile(spec: mujoco.MjSpec, names: str, world: str | Path) -> mujoco.MjModel:
