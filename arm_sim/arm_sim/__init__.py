@@ -32,7 +32,7 @@ _IMPORT_ENVIRONMENT = {
     # A window library would double MuJoCo's import time.
     "MUJOCO_GL": "disabled",
     # The threads of NumPy's OpenBLAS wait awake before they sleep: for 2^20 cycles, less than a
-    # millisecond. By default each takes a tenth of a second of a processor at the start.
+    # millisecond. By default one of them takes a tenth of the processor time of a start.
     "OPENBLAS_THREAD_TIMEOUT": "20",
 }
 """Variables that MuJoCo and NumPy read when they are imported."""
