@@ -90,7 +90,7 @@ class RobotSettings:
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@frozen(kw_only=True)
 class _Namespaces:
     robots: tuple[str, ...] = setting(
         (), "namespaces of several robots; none for a single one", read_words
