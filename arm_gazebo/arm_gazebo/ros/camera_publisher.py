@@ -2,21 +2,45 @@
 
 from array import array
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from numpy.typing import NDArray
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2, PointField
 
 from arm_gazebo.camera.depth_image import CHANNELS, PointGrid
 from arm_gazebo.camera.pipeline import CameraPipeline, CameraReport
-from arm_gazebo.ros.topic import QOS, set_stamp, watched
+from arm_gazebo.ros.topic import set_stamp
 from arm_gazebo.sensors.camera import CameraSensor
 
+QOS = QoSProfile(depth=2)
+"""Reliable and volatile, so that both default and best-effort subscribers match."""
 FLOAT_BYTES = 4
 POINT_FIELDS = ("x", "y", "z", "rgb")
 JPEG_QUALITY = 80
+
+
+class _Topics:
+    """One message, and the topics that it is published on."""
+
+    def __init__(self, node: Node, message: Any, names: Sequence[str]) -> None:
+        self.message = message
+        self._publishers = [node.create_publisher(type(message), name, QOS) for name in names]
+
+    @property
+    def subscribers(self) -> int:
+        """Number of subscribers now; takes about 1 us per topic."""
+        return sum(publisher.get_subscription_count() for publisher in self._publishers)
+
+    def publish(self, time_s: float) -> None:
+        """Publish the message on the topics with subscribers, with a stamp."""
+        set_stamp(self.message.header, time_s)
+        for publisher in self._publishers:
+            if publisher.get_subscription_count():
+                publisher.publish(self.message)
 
 
 class _DepthPublisher:
@@ -28,40 +52,35 @@ class _DepthPublisher:
 
     def __init__(self, node: Node, sensor: CameraSensor) -> None:
         size = (sensor.height, sensor.width)
-        self._image = _depth_message(sensor)
-        self._images = [node.create_publisher(Image, t, QOS) for t in sensor.depth_topics]
-        self._cloud = _cloud_message(sensor)
-        self._clouds = [node.create_publisher(PointCloud2, t, QOS) for t in sensor.points_topics]
-        self.depth = np.frombuffer(self._image.data, np.float32).reshape(size)
-        self._points = np.frombuffer(self._cloud.data, np.float32).reshape(*size, CHANNELS)
+        image = _image_message(sensor, "32FC1", FLOAT_BYTES)
+        self._images = _Topics(node, image, sensor.depth_topics)
+        cloud = _cloud_message(sensor)
+        self._clouds = _Topics(node, cloud, sensor.points_topics)
+        self.depth = np.frombuffer(image.data, np.float32).reshape(size)
+        self._points = np.frombuffer(cloud.data, np.float32).reshape(*size, CHANNELS)
         self._grid = PointGrid(sensor)
 
     @property
     def subscribers(self) -> int:
         """Number of subscribers."""
-        return sum(p.get_subscription_count() for p in (*self._images, *self._clouds))
+        return self._images.subscribers + self._clouds.subscribers
 
     def wants_colours(self) -> bool:
         """Return whether the point cloud, which has colours, has subscribers."""
-        return bool(watched(self._clouds))
+        return self._clouds.subscribers > 0
 
     def publish(self, time_s: float, picture: NDArray[np.uint8] | None) -> None:
         """Publish the depth on topics with subscribers, with colours (height, width, 3) if any."""
-        set_stamp(self._image.header, time_s)
-        for publisher in watched(self._images):
-            publisher.publish(self._image)
-        clouds = watched(self._clouds)
-        if clouds:
-            set_stamp(self._cloud.header, time_s)
+        self._images.publish(time_s)
+        if self._clouds.subscribers:
             self._grid.fill(self._points, self.depth, picture)
-            for publisher in clouds:
-                publisher.publish(self._cloud)
+            self._clouds.publish(time_s)
 
 
-def _depth_message(sensor: CameraSensor) -> Image:
-    message = Image(height=sensor.height, width=sensor.width, encoding="32FC1")
+def _image_message(sensor: CameraSensor, encoding: str, pixel_bytes: int) -> Image:
+    message = Image(height=sensor.height, width=sensor.width, encoding=encoding)
     message.header.frame_id = sensor.optical_frame
-    message.step = sensor.width * FLOAT_BYTES
+    message.step = sensor.width * pixel_bytes
     message.data = array("B", bytes(message.step * sensor.height))
     return message
 
@@ -92,19 +111,13 @@ class CameraPublisher:
     """
 
     def __init__(self, node: Node, sensor: CameraSensor) -> None:
-        self._info = info_message(sensor)
-        self._infos = [node.create_publisher(CameraInfo, t, QOS) for t in sensor.info_topics]
-        self._image = _image_message(sensor)
-        self._images = [node.create_publisher(Image, t, QOS) for t in sensor.image_topics]
-        self._jpeg = CompressedImage(format="rgb8; jpeg compressed bgr8")
-        self._jpeg.header.frame_id = sensor.optical_frame
-        self._jpegs = [
-            node.create_publisher(CompressedImage, f"{t}/compressed", QOS)
-            for t in sensor.image_topics
-        ]
-        self.picture = np.frombuffer(self._image.data, np.uint8).reshape(
-            sensor.height, sensor.width, 3
-        )
+        image = _image_message(sensor, "rgb8", 3)
+        jpeg = CompressedImage(format="rgb8; jpeg compressed bgr8")
+        jpeg.header.frame_id = sensor.optical_frame
+        self._infos = _Topics(node, info_message(sensor), sensor.info_topics)
+        self._images = _Topics(node, image, sensor.image_topics)
+        self._jpegs = _Topics(node, jpeg, [f"{topic}/compressed" for topic in sensor.image_topics])
+        self.picture = np.frombuffer(image.data, np.uint8).reshape(sensor.height, sensor.width, 3)
         self._colours = self.picture if sensor.image_topics else None
         self._depth = _DepthPublisher(node, sensor) if sensor.measures_depth else None
 
@@ -116,12 +129,12 @@ class CameraPublisher:
     @property
     def subscribers(self) -> int:
         """Number of subscribers to images, compressed images, depth and points."""
-        pictures = sum(p.get_subscription_count() for p in (*self._images, *self._jpegs))
+        pictures = self._images.subscribers + self._jpegs.subscribers
         return pictures + (0 if self._depth is None else self._depth.subscribers)
 
     def wants_picture(self) -> bool:
         """Return whether the colours have subscribers now; takes about 1 us per topic."""
-        if watched((*self._images, *self._jpegs)):
+        if self._images.subscribers or self._jpegs.subscribers:
             return True
         return self._colours is not None and self._depth is not None and self._depth.wants_colours()
 
@@ -130,35 +143,20 @@ class CameraPublisher:
         return self._depth is not None and self._depth.subscribers > 0
 
     def publish_info(self, time_s: float) -> None:
-        """Publish the camera info on every info topic."""
-        set_stamp(self._info.header, time_s)
-        for publisher in self._infos:
-            publisher.publish(self._info)
+        """Publish the camera info on every info topic with subscribers."""
+        self._infos.publish(time_s)
 
     def publish_picture(self, time_s: float) -> None:
         """Publish the image, raw and compressed, on the topics that have subscribers."""
-        set_stamp(self._image.header, time_s)
-        for publisher in watched(self._images):
-            publisher.publish(self._image)
-        jpegs = watched(self._jpegs)
-        if jpegs:
-            set_stamp(self._jpeg.header, time_s)
-            self._jpeg.data = _compress(self.picture)
-            for publisher in jpegs:
-                publisher.publish(self._jpeg)
+        self._images.publish(time_s)
+        if self._jpegs.subscribers:
+            self._jpegs.message.data = _compress(self.picture)
+            self._jpegs.publish(time_s)
 
     def publish_depth(self, time_s: float) -> None:
         """Publish the depth image and the point cloud."""
         if self._depth is not None:
             self._depth.publish(time_s, self._colours)
-
-
-def _image_message(sensor: CameraSensor) -> Image:
-    message = Image(height=sensor.height, width=sensor.width, encoding="rgb8")
-    message.header.frame_id = sensor.optical_frame
-    message.step = sensor.width * 3
-    message.data = array("B", bytes(message.step * sensor.height))
-    return message
 
 
 def info_message(sensor: CameraSensor) -> CameraInfo:

@@ -1,21 +1,11 @@
-"""Quality of service, subscriber checks, stamps and message types of topics."""
+"""Stamps and message types of topics."""
 
-from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
-from rclpy.publisher import Publisher
-from rclpy.qos import QoSProfile
 from std_msgs.msg import Header
 
-QOS = QoSProfile(depth=2)
-"""Reliable and volatile, so that both default and best-effort subscribers match."""
 NS_PER_S = 1_000_000_000
-
-
-def watched(publishers: Sequence[Publisher]) -> list[Publisher]:
-    """Return the publishers that have subscribers now; takes about 1 us each."""
-    return [p for p in publishers if p.get_subscription_count()]
 
 
 def set_stamp(header: Header, time_s: float) -> None:
