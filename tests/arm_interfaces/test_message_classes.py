@@ -1,72 +1,126 @@
 """Every class has the recorded fields and constants, and survives the way over the wire."""
 
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from rclpy.serialization import deserialize_message, serialize_message
+from rosidl_generator_type_description import (
+    calculate_type_hash,
+    extract_full_type_description,
+    serialize_individual_type_description,
+)
+from rosidl_parser.definition import AbstractSequence, Array, BasicType, Member, NamespacedType
 
-PYTHON_NAMES = {"bool": "boolean", "byte": "octet", "float32": "float", "float64": "double"}
+EXPECTED_CONSTANTS: dict[str, dict[str, Any]] = yaml.safe_load(
+    (Path(__file__).parent / "expected_constants.yaml").read_bytes()
+)
 
-
-Recorded = dict[str, dict[str, Any]]
-Parts = list[tuple[str, type, dict[str, Any]]]
+PARTS = {
+    "srv": {"request_message": "Request", "response_message": "Response", "event_message": "Event"},
+    "action": {
+        "goal": "Goal",
+        "result": "Result",
+        "feedback": "Feedback",
+        "send_goal_service": "SendGoalService",
+        "get_result_service": "GetResultService",
+        "feedback_message": "FeedbackMessage",
+    },
+}
+"""The members of services and actions as structures, and the classes that these are."""
+EMPTY = {"structure_needs_at_least_one_member": BasicType("uint8")}
 
 
 @pytest.fixture
-def parts(recorded, load_type) -> Parts:
-    """Name the messages of a package, those inside services and actions too, with their record."""
-    return [
-        (f"{type_name}.{part}", cls if part == "Message" else getattr(cls, part), record)
-        for type_name, of in recorded.items()
-        for cls in (load_type(type_name),)
-        for part, record in of.items()
-        if part != "hash"
-    ]
-
-
-def python_field_type(field_type: str, package: str) -> str:
-    """Spell a field's type as the generated class does."""
-    if field_type.endswith("[]"):
-        return f"sequence<{python_field_type(field_type.removesuffix('[]'), package)}>"
-    if field_type[0].isupper():
-        return f"{package}/{field_type}"
-    return PYTHON_NAMES.get(field_type, field_type)
-
-
-def test_fields_are_in_order(parts):
-    wanted = {
-        name: [
-            (field, python_field_type(kind, name.split("/")[0]))
-            for field, kind in record.get("fields", {}).items()
-        ]
-        for name, _, record in parts
+def parts(recorded, load_type) -> dict[str, Any]:
+    """The messages of a package by name, those inside services and actions too."""
+    classes = {name: load_type(name) for name in recorded}
+    inside = {
+        f"{name}_{part}": getattr(cls, part)
+        for name, cls in classes.items()
+        for part in ("Request", "Response", "Goal", "Result", "Feedback")
+        if hasattr(cls, part)
     }
-    found = {name: list(cls.get_fields_and_field_types().items()) for name, cls, _ in parts}
-    assert found == wanted
+    return inside | {name: cls for name, cls in classes.items() if "/msg/" in name}
+
+
+@pytest.fixture
+def hash_of(load_type) -> Callable[[str], str]:
+    """Return a function that makes a type's hash from the fields of its Python classes."""
+    known: dict[str, dict[str, Any]] = {}
+
+    def describe(name: str, cls: Any) -> None:
+        *namespaces, short = name.split("/")
+        inside: dict[str, Any] = {}
+        if hasattr(cls, "SLOT_TYPES"):
+            fields = dict(zip(cls.get_fields_and_field_types(), cls.SLOT_TYPES, strict=True))
+        else:
+            fields = {}
+            for field, part in PARTS["action" if hasattr(cls, "Impl") else "srv"].items():
+                of = part.removesuffix("Service")
+                fields[field] = NamespacedType(namespaces, f"{short}_{of}")
+                inside[f"{name}_{of}"] = getattr(cls if hasattr(cls, part) else cls.Impl, part)
+        known[name] = serialize_individual_type_description(
+            NamespacedType(namespaces, short),
+            [Member(kind, field) for field, kind in (fields or EMPTY).items()],
+        )
+        for field in known[name]["fields"]:
+            nested = field["type"]["nested_type_name"]
+            if nested and nested not in known:
+                describe(nested, inside.get(nested) or load_type(nested))
+
+    def made(name: str) -> str:
+        describe(name, load_type(name))
+        return calculate_type_hash(extract_full_type_description(name, known))
+
+    return made
+
+
+def spelt(kind: Any) -> str:
+    """Spell a field's type as the generated class does."""
+    if isinstance(kind, AbstractSequence):
+        return f"sequence<{spelt(kind.value_type)}>"
+    if isinstance(kind, Array):
+        return f"{spelt(kind.value_type)}[{kind.size}]"
+    if isinstance(kind, NamespacedType):
+        return f"{kind.namespaces[0]}/{kind.name}"
+    return kind.typename if isinstance(kind, BasicType) else "string"
+
+
+def test_the_fields_of_its_classes_make_a_types_hash(recorded, hash_of):
+    assert {name: hash_of(name) for name in recorded} == recorded
+
+
+def test_the_types_of_fields_are_spelt_as_they_are(parts):
+    found = {name: list(cls.get_fields_and_field_types().values()) for name, cls in parts.items()}
+    assert found == {name: list(map(spelt, cls.SLOT_TYPES)) for name, cls in parts.items()}
 
 
 def test_instances_have_every_field(parts):
     missing = [
         f"{name}.{field}"
-        for name, cls, record in parts
+        for name, cls in parts.items()
         for message in (cls(),)
-        for field in record.get("fields", {})
+        for field in cls.get_fields_and_field_types()
         if getattr(message, field, None) is None
     ]
     assert missing == []
 
 
 def test_constants_have_their_values(parts):
-    wanted = {name: record.get("constants", {}) for name, _, record in parts}
+    package = next(iter(parts)).partition("/")[0]
+    wanted = {n: c for n, c in EXPECTED_CONSTANTS.items() if n.startswith(f"{package}/")}
     found = {
-        name: {constant: _number(getattr(cls, constant)) for constant in wanted[name]}
-        for name, cls, _ in parts
+        name: {constant: _number(getattr(parts[name], constant)) for constant in constants}
+        for name, constants in wanted.items()
     }
     assert found == wanted
 
 
 def test_default_messages_survive_serialisation(parts):
-    for name, cls, _ in parts:
+    for name, cls in parts.items():
         message = cls()
         assert deserialize_message(serialize_message(message), cls) == message, name
 
