@@ -3,7 +3,7 @@
 import importlib.util
 import os
 import sys
-from collections.abc import MutableMapping, Sequence
+from collections.abc import Mapping, MutableMapping, Sequence
 from pathlib import Path
 
 from arm_node.workarounds.lazy_messages import import_messages_lazily
@@ -26,6 +26,12 @@ SEEING_PACKAGES = (*PLANNING_PACKAGES, "mycobot_interfaces")
 MIDDLEWARE = "rmw_fastrtps_cpp"
 PACKAGES = Path("share", "ament_index", "resource_index", "packages")
 """Where a prefix has a file for each of its packages."""
+LOGGING_SWITCHES = (
+    "RCUTILS_COLORIZED_OUTPUT",
+    "RCUTILS_LOGGING_USE_STDOUT",
+    "RCUTILS_LOGGING_BUFFERED_STREAM",
+)
+"""Variables of ROS's logging that are 0, 1 or empty."""
 LAST_DOMAIN = 232
 """Higher DDS domains would need port numbers that do not exist."""
 
@@ -46,6 +52,14 @@ class InvalidDomainError(UnusableEnvironmentError):
     """ROS_DOMAIN_ID is not a valid domain."""
 
 
+class InvalidLoggingError(UnusableEnvironmentError):
+    """A variable of ROS's logging has a value that ROS does not know."""
+
+
+class MissingSecurityError(UnusableEnvironmentError):
+    """The environment enforces SROS2, which the ROS wheels are built without."""
+
+
 def prepare_environment(
     environ: MutableMapping[str, str] = os.environ, packages: Sequence[str] = ()
 ) -> None:
@@ -63,14 +77,18 @@ def prepare_environment(
     Raises:
         MissingInterfacesError: an interface package is not installed.
         InvalidDomainError: ROS_DOMAIN_ID is not a number from 0 to 232.
+        InvalidLoggingError: one of `LOGGING_SWITCHES` is neither 0 nor 1.
         MissingMiddlewareError: the package that RMW_IMPLEMENTATION names is not installed.
+        MissingSecurityError: SROS2 is enforced, and rclpy is that of the wheels.
     """
     _check_domain(environ.get("ROS_DOMAIN_ID", ""))
+    _check_logging(environ)
     prefixes = [p for p in environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
     if sys.prefix not in prefixes:
         prefixes.append(sys.prefix)
         environ["AMENT_PREFIX_PATH"] = os.pathsep.join(prefixes)
     _check_middleware(environ.get("RMW_IMPLEMENTATION", ""), prefixes)
+    _check_security(environ)
     if "HOME" not in environ and "ROS_LOG_DIR" not in environ and "ROS_HOME" not in environ:
         from tempfile import gettempdir
 
@@ -106,6 +124,30 @@ def _check_domain(text: str) -> None:
         raise InvalidDomainError(
             f"ROS_DOMAIN_ID is {text!r}; it must be a whole number from 0 to {LAST_DOMAIN}"
         )
+
+
+def _check_logging(environ: Mapping[str, str]) -> None:
+    # rcl would start with another value, and print several lines of errors for each log call.
+    for name in LOGGING_SWITCHES:
+        value = environ.get(name, "")
+        if value not in ("", "0", "1"):
+            raise InvalidLoggingError(f"{name} is {value!r}; it must be 0 or 1")
+
+
+def _check_security(environ: Mapping[str, str]) -> None:
+    # rcl would say "error not set".
+    enable, strategy = environ.get("ROS_SECURITY_ENABLE"), environ.get("ROS_SECURITY_STRATEGY")
+    if enable == "true" and strategy == "Enforce" and _uses_wheels():
+        raise MissingSecurityError(
+            "ROS_SECURITY_STRATEGY is 'Enforce', but the Fast DDS of the ROS wheels is built "
+            "without security: unset ROS_SECURITY_ENABLE"
+        )
+
+
+def _uses_wheels() -> bool:
+    """Return whether rclpy is that of this Python, not of a sourced ROS, which has security."""
+    spec = importlib.util.find_spec("rclpy")
+    return spec is not None and Path(spec.origin or "").is_relative_to(sys.prefix)
 
 
 def _check_middleware(name: str, prefixes: Sequence[str]) -> None:

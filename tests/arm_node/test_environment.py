@@ -6,10 +6,13 @@ import sys
 import pytest
 
 from arm_node.environment import (
+    LOGGING_SWITCHES,
     PLANNING_PACKAGES,
     InvalidDomainError,
+    InvalidLoggingError,
     MissingInterfacesError,
     MissingMiddlewareError,
+    MissingSecurityError,
     prepare_environment,
 )
 
@@ -71,6 +74,46 @@ def test_what_ros_takes_for_a_domain_is_left_as_it_is(text):
     environment = {"HOME": "/home/me", "ROS_DOMAIN_ID": text}
     prepare_environment(environment)
     assert environment["ROS_DOMAIN_ID"] == text
+
+
+@pytest.mark.parametrize("name", LOGGING_SWITCHES)
+def test_a_logging_switch_that_ros_does_not_know_is_refused(name):
+    with pytest.raises(InvalidLoggingError) as refused:
+        prepare_environment({"HOME": "/home/me", name: "true"})
+    assert str(refused.value) == f"{name} is 'true'; it must be 0 or 1"
+
+
+@pytest.mark.parametrize("value", ["", "0", "1"])
+def test_a_logging_switch_that_ros_knows_is_left_as_it_is(value):
+    environment = {"HOME": "/home/me", "RCUTILS_COLORIZED_OUTPUT": value}
+    prepare_environment(environment)
+    assert environment["RCUTILS_COLORIZED_OUTPUT"] == value
+
+
+ENFORCED = {"ROS_SECURITY_ENABLE": "true", "ROS_SECURITY_STRATEGY": "Enforce"}
+
+
+def test_security_that_the_wheels_lack_is_refused():
+    with pytest.raises(MissingSecurityError) as refused:
+        prepare_environment({"HOME": "/home/me"} | ENFORCED)
+    assert str(refused.value).endswith("is built without security: unset ROS_SECURITY_ENABLE")
+
+
+@pytest.mark.parametrize(
+    "changed", [{"ROS_SECURITY_STRATEGY": ""}, {"ROS_SECURITY_ENABLE": "TRUE"}]
+)
+def test_security_that_ros_does_not_enforce_is_left_as_it_is(changed):
+    environment = {"HOME": "/home/me"} | ENFORCED | changed
+    prepare_environment(environment)
+    assert environment.items() >= (ENFORCED | changed).items()
+
+
+def test_the_security_of_a_sourced_ros_is_left_as_it_is(monkeypatch, tmp_path):
+    (tmp_path / "rclpy.py").write_text("")
+    monkeypatch.syspath_prepend(tmp_path)
+    environment = {"HOME": "/home/me"} | ENFORCED
+    prepare_environment(environment)
+    assert environment.items() >= ENFORCED.items()
 
 
 def test_a_middleware_that_is_not_installed_is_refused():

@@ -99,7 +99,7 @@ class MeshLibrary:
     def thickened(self, mesh: Mesh, part: MeshPart, user: str = "") -> MeshAsset:
         """Return a flat part of a mesh made thick enough to collide; a new asset at each call."""
         path = self._resolve(mesh)
-        name = self._add_hull(path.stem, part.thickened())
+        name = self._add_hull(path.stem, part)
         self._describe(name, path, user)
         return MeshAsset(name, part.drawn.rgba)
 
@@ -124,8 +124,9 @@ class MeshLibrary:
         return self._add(stem, part.drawn.vertices, part.drawn.faces)
 
     def _add_hull(self, stem: str, part: MeshPart) -> str:
-        # MuJoCo draws a mesh without triangles as its hull.
-        return self._add(f"{stem}_hull", part.hull, np.empty((0, 3), np.int32))
+        # MuJoCo draws a mesh without triangles as its hull, which a flat one does not have.
+        hull = part.thickened().hull if part.is_flat() else part.hull
+        return self._add(f"{stem}_hull", hull, np.empty((0, 3), np.int32))
 
     def _add(self, stem: str, vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> str:
         name = self._free_name(stem)

@@ -183,7 +183,8 @@ class LinkGeometry:
             asset = self._meshes.thickened(mesh, part, _where(link))
             shape = _Shape(mujoco.mjtGeom.mjGEOM_MESH, mesh=asset.name)
             instead = "it is made a little thicker"
-        problem = f"its collision mesh {mesh.uri} is flat; {instead}"
+        flat = "a part of its" if len(self._meshes.parts(mesh)) > 1 else "its"
+        problem = f"{flat} collision mesh {mesh.uri} is flat; {instead}"
         self._report.repair(f"link '{link.name}'", problem, link.line)
         return shape
 

@@ -383,6 +383,35 @@ def test_a_sheet_however_thin_can_be_touched(parts, tmp_path, thickness, offset,
     assert all(0.049 < side < 0.072 for side in sides)
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_fine_sheet_can_be_touched(parts, tmp_path, turned):
+    """It has so many vertices that only the outermost ones are collided with."""
+    grid = np.stack(np.meshgrid(np.linspace(0, 0.1, 40), np.linspace(0, 0.1, 40), [0.0]), -1)
+    points = grid.reshape(-1, 3)
+    corners = [[n, n + 1, n + 40] for n in range(len(points) - 41)]
+    fine = trimesh.Trimesh(points, corners)
+    if turned:
+        fine.apply_transform(trimesh.transformations.rotation_matrix(0.7, [1, 2, 3]))
+    fine.export(tmp_path / "fine.stl")
+    built = parts.build(robot_with(shape(tmp_path / "fine.stl", tag="collision")))
+    thin, *sides = sorted(built.model.geom_aabb[built.model.ngeom - 1, 3:])
+    assert thin < 1e-3
+    assert all(0.049 < side < 0.072 for side in sides)
+
+
+def test_a_flat_part_beside_a_fine_one_can_be_touched(parts, tmp_path):
+    ball = trimesh.creation.icosphere(4, 0.1)
+    lines = ["mtllib two.mtl", "usemtl red"]
+    lines += [f"v {x} {y} {z}" for x, y, z in ball.vertices]
+    lines += [f"f {a} {b} {c}" for a, b, c in ball.faces + 1]
+    lines += ["v 1 0 0", "v 1.1 0 0", "v 1.1 0.1 0", "v 1 0.1 0", "usemtl green", "f -4 -3 -2 -1"]
+    (tmp_path / "two.obj").write_text("\n".join(lines))
+    (tmp_path / "two.mtl").write_text("newmtl red\nKd 1 0 0\nnewmtl green\nKd 0 1 0\n")
+    built = parts.build(robot_with(shape(tmp_path / "two.obj", tag="collision")))
+    assert "a part of its collision mesh" in str(built.report.warnings[0])
+    assert built.model.geom_size[-1] == pytest.approx([0.05, 0.05, 1e-4])
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_meshes_without_a_hull_are_found_before_mujoco_fails(parts, tmp_path, seed):
     random = np.random.default_rng(seed)
