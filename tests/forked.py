@@ -49,7 +49,6 @@ def popen(
     stdin: int = subprocess.DEVNULL,
     stderr: int = subprocess.STDOUT,
     cwd: Path | str | None = None,
-    text: bool = True,
 ) -> Any:
     """Start a program, with pipes from its output; return its `Popen`, or what serves as one.
 
@@ -58,7 +57,7 @@ def popen(
     words = [os.fspath(word) for word in command]
     server = _server()
     if _is_python(words) and server.has_imported_for(environment):
-        return ForkedProcess(server, words[1:], environment, stdin, stderr, cwd, text)
+        return ForkedProcess(server, words[1:], environment, stdin, stderr, cwd)
     return subprocess.Popen(
         words,
         stdin=stdin,
@@ -66,8 +65,8 @@ def popen(
         stderr=stderr,
         env=dict(environment),
         cwd=cwd,
-        text=text,
-        errors="replace" if text else None,
+        text=True,
+        errors="replace",
     )
 
 
@@ -96,7 +95,6 @@ class ForkedProcess:
         stdin: int,
         stderr: int,
         cwd: Path | str | None,
-        text: bool,
     ) -> None:
         self._server = server
         self.args = words
@@ -111,9 +109,9 @@ class ForkedProcess:
         finally:
             for descriptor in given:
                 os.close(descriptor)
-        self.stdin = _opened(write_in, "w", text)
-        self.stdout = _opened(read_out, "r", text)
-        self.stderr = _opened(read_err, "r", text)
+        self.stdin = _opened(write_in, "w")
+        self.stdout = _opened(read_out, "r")
+        self.stderr = _opened(read_err, "r")
 
     def poll(self) -> int | None:
         """Return the exit code, None as long as it runs."""
@@ -145,12 +143,8 @@ def _null() -> int:
     return os.open(os.devnull, os.O_RDONLY)
 
 
-def _opened(descriptor: int | None, mode: str, text: bool) -> Any:
-    if descriptor is None:
-        return None
-    if text:
-        return os.fdopen(descriptor, mode, errors="replace")
-    return os.fdopen(descriptor, f"{mode}b", buffering=-1 if mode == "r" else 0)
+def _opened(descriptor: int | None, mode: str) -> Any:
+    return None if descriptor is None else os.fdopen(descriptor, mode, errors="replace")
 
 
 class Server:

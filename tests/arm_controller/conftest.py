@@ -13,10 +13,20 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from forked import popen
+import rclpy
+from programs import RosProgram
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.signals import SignalHandlerOptions
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray, String
+
+from arm_node.workarounds.discovery import first_node
 
 WAIT_TIMEOUT_S = 30.0
-END_TIMEOUT_S = 60.0
 JOINTS = ("j0", "j1", "j2", "j3")
 STATE_ORDER = ("j3", "j0", "j2", "j1")
 """Joint states come in any order; this one is no default."""
@@ -54,11 +64,6 @@ class FakeRobot:
     """
 
     def __init__(self) -> None:
-        import rclpy
-        from rclpy.context import Context
-        from rclpy.executors import SingleThreadedExecutor
-        from rclpy.signals import SignalHandlerOptions
-
         self.positions = dict.fromkeys(JOINTS, 0.0)
         self.stuck: set[str] = set()
         self.sent_ns: list[int] = []
@@ -76,9 +81,6 @@ class FakeRobot:
 
     def node(self, name: str):
         """Add a node."""
-        from rclpy.node import Node
-
-        from arm_node.workarounds.discovery import first_node
 
         def make() -> Node:
             return Node(name, context=self._context)
@@ -93,9 +95,6 @@ class FakeRobot:
 
         When the publisher sent each comes to `sent_ns`, of all subscriptions.
         """
-        from rclpy.qos import QoSProfile, ReliabilityPolicy
-        from std_msgs.msg import Float64MultiArray
-
         received: list[list[float]] = []
 
         def take(message: Float64MultiArray, info: dict) -> None:
@@ -116,9 +115,6 @@ class FakeRobot:
 
     def describe(self, velocity: float = 2.0) -> None:
         """Publish a latched description with limits of 2.57 rad."""
-        from rclpy.qos import DurabilityPolicy, QoSProfile
-        from std_msgs.msg import String
-
         qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         publisher = self.node("robot_state_publisher").create_publisher(
             String, "/robot_description", qos
@@ -127,8 +123,6 @@ class FakeRobot:
 
     def broadcast(self) -> None:
         """Publish joint states, in an order of its own, efforts 10 times the positions."""
-        from sensor_msgs.msg import JointState
-
         node = self.node("joint_state_broadcaster")
         publisher = node.create_publisher(JointState, "/joint_states", 10)
 
@@ -147,8 +141,6 @@ class FakeRobot:
 
     def tick(self) -> None:
         """Publish /clock, ten times as fast as time passes."""
-        from rosgraph_msgs.msg import Clock
-
         node = self.node("clock")
         publisher = node.create_publisher(Clock, "/clock", 1)
         message = Clock()
@@ -174,75 +166,31 @@ class FakeRobot:
         self._context.try_shutdown()
 
 
-class Program:
-    """A running executable, and what it printed."""
+class TypedProgram(RosProgram):
+    """A running executable that is typed to; its prompt, which has no line end, is seen."""
 
     def __init__(self, name: str, arguments: list[str], log_folder: Path) -> None:
-        self._lock = threading.Condition()
-        self._output = ""
-        self.process = popen(
-            [sys.executable, Path(sys.executable).with_name(name), *arguments],
-            {**os.environ, "ROS_LOG_DIR": str(log_folder)},
-            stdin=subprocess.PIPE,
-            text=False,
-        )
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
+        command = [sys.executable, Path(sys.executable).with_name(name), *arguments]
+        environment = {**os.environ, "ROS_LOG_DIR": str(log_folder)}
+        super().__init__(command, environment, subprocess.PIPE)
 
     def _read(self) -> None:
-        assert self.process.stdout is not None
-        while chunk := os.read(self.process.stdout.fileno(), 4096):
-            with self._lock:
-                self._output += chunk.decode()
-
-    @property
-    def output(self) -> str:
-        """All that was printed so far."""
-        with self._lock:
-            return self._output
-
-    def wait_for(self, text: str) -> None:
-        """Block until this text was printed."""
-        poll(lambda: text in self.output or self.process.poll() is not None, text)
-        assert text in self.output, f"{text!r} was not printed:\n{self.output}"
+        output, chunk = b"", b"\n"
+        while chunk:
+            chunk = os.read(self.process.stdout.fileno(), 4096)
+            output += chunk
+            with self._changed:
+                self._lines, self._is_closed = output.decode().splitlines(), not chunk
+                self._changed.notify_all()
 
     def type(self, text: str) -> None:
         """Write to the standard input."""
-        assert self.process.stdin is not None
-        self.process.stdin.write(text.encode())
+        self.process.stdin.write(text)
         self.process.stdin.flush()
 
     def end_of_input(self) -> None:
         """Close the standard input."""
-        assert self.process.stdin is not None
         self.process.stdin.close()
-
-    def interrupt(self) -> int:
-        """Send what Ctrl-C sends; return the exit code."""
-        self.process.send_signal(signal.SIGINT)
-        return self.wait()
-
-    def wait(self) -> int:
-        """Wait for the end; return the exit code."""
-        code = self.process.wait(WAIT_TIMEOUT_S)
-        self._reader.join(WAIT_TIMEOUT_S)
-        return code
-
-    def close(self) -> None:
-        """Leave nothing behind, whatever the test did.
-
-        Killed, it might hold a lock in the shared memory of others, who would then hang.
-        """
-        if self.process.poll() is None:
-            self.process.terminate()
-            try:
-                self.process.wait(END_TIMEOUT_S)
-            except subprocess.TimeoutExpired:
-                self.process.kill()
-        self.wait()
-        for stream in (self.process.stdin, self.process.stdout):
-            if stream is not None and not stream.closed:
-                stream.close()
 
 
 @pytest.fixture
@@ -254,19 +202,20 @@ def robot() -> Iterator[FakeRobot]:
 
 
 @pytest.fixture
-def run(tmp_path: Path) -> Iterator[Callable[..., Program]]:
+def run(tmp_path: Path) -> Iterator[Callable[..., TypedProgram]]:
     """Start an executable of arm_controller by its name, with ROS parameters."""
-    started: list[Program] = []
+    started: list[TypedProgram] = []
 
-    def start(name: str, *arguments: str, **parameters: object) -> Program:
+    def start(name: str, *arguments: str, **parameters: object) -> TypedProgram:
         options = [x for key, value in parameters.items() for x in ("-p", f"{key}:={value}")]
-        program = Program(name, [*arguments, "--ros-args", *options], tmp_path / "log")
+        program = TypedProgram(name, [*arguments, "--ros-args", *options], tmp_path / "log")
         started.append(program)
         return program
 
     yield start
     for program in started:
-        program.close()
+        # Killed, it might hold a lock in the shared memory of others, who would then hang.
+        program.close(signal.SIGTERM)
 
 
 @pytest.fixture

@@ -7,6 +7,10 @@ import numpy as np
 import pytest
 import yaml
 from ament_index_python.packages import get_package_share_directory
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
+
+from arm_node.testing import DiscoveryCheck
 
 pytestmark = pytest.mark.ros
 
@@ -44,11 +48,6 @@ def course_file(course: str) -> tuple[str, ...]:
 @pytest.fixture
 def set_pose(robot) -> Callable:
     """Set desired_param through the node's service, as a command line does."""
-    from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-    from rcl_interfaces.srv import SetParameters
-
-    from arm_node.testing import DiscoveryCheck
-
     node = robot.node("parameter_client")
     client = node.create_client(SetParameters, "/arm_controller_node/set_parameters")
     check = DiscoveryCheck.with_server(node, client.service_name)
@@ -78,11 +77,11 @@ def test_publishes_the_pose_of_its_file_exactly_once(robot, run, until):
     robot.describe()
     robot.broadcast()
     program = run(NAME, "--ros-args", "--params-file", str(CONFIG / "params.yaml"))
-    program.wait_for("Publishing positions: [0.400000, -0.100000, 0.500000, 0.400000]")
+    program.wait_for_line("Publishing positions: [0.400000, -0.100000, 0.500000, 0.400000]")
     # Two prints of the joint states later it would have been published again, if ever.
     until(lambda: program.output.count("Joint State: 'j3'") >= 3, "three prints")
     assert commands == [DEFAULT_POSE]
-    assert program.interrupt() == 0
+    assert program.stop() == 0
     assert program.output.count("Publishing") == 1
 
 
@@ -91,13 +90,13 @@ def test_publishes_nothing_without_a_pose_and_prints_by_name(robot, run):
     robot.positions.update(j0=0.1, j1=-0.2, j2=0.3, j3=1.5)
     robot.broadcast()
     program = run(NAME, print_period=0.2)
-    program.wait_for("Joint State: 'j3'")
+    program.wait_for_line("Joint State: 'j3'")
     for name, position in robot.positions.items():
         assert (
             f"Joint State: '{name}' Position: {position:.6f} Velocity: 0.250000 "
             f"Effort: {10 * position:.6f}" in program.output
         )
-    assert program.interrupt() == 0
+    assert program.stop() == 0
     assert commands == []
 
 
@@ -118,7 +117,7 @@ def test_logs_each_publication_if_told_to(robot, run, until):
     )
     line = "Publishing positions: [0.100000, 0.200000, 0.300000, 0.400000]"
     until(lambda: program.output.count(line) >= 3, "three lines")
-    assert program.interrupt() == 0
+    assert program.stop() == 0
     # The end of the node may overtake its last message.
     assert program.output.count(line) - len(commands) in (0, 1)
 
@@ -158,7 +157,7 @@ def test_a_course_has_its_own_pose_and_prints(robot, run, until, course, pose, l
     robot.broadcast()
     program = run(NAME, *course_file(course))
     for line in lines:
-        program.wait_for(line)
+        program.wait_for_line(line)
     commands = robot.listen()
     until(lambda: len(commands) >= 5, "a pose again and again")
     assert commands == [pose] * len(commands)
@@ -173,7 +172,7 @@ def test_course_s2_logs_each_publication(robot, run, until):
     program = run(NAME, *course_file("S2"))
     line = "Publishing positions: [0.400000, -0.100000, 0.500000, 0.400000]"
     until(lambda: program.output.count(line) >= 2, "two publications")
-    assert program.interrupt() == 0
+    assert program.stop() == 0
 
 
 def test_course_s0_prints_thirty_times_a_second(robot, run, until):
@@ -218,26 +217,26 @@ def test_refuses_poses_with_a_reason_and_keeps_the_old_one(robot, run, until, se
     assert set_pose(until, double_array_value=[0.0] * 4).successful
     until(lambda: len(commands) == 2, "the next good pose")
     assert commands == [[0.1, 0.2, 0.3, 0.4], [0.0] * 4]
-    assert program.interrupt() == 0
+    assert program.stop() == 0
 
 
 def test_a_pose_beyond_limits_that_come_later_is_not_published(robot, run):
     commands = robot.listen()
     robot.describe()
     program = run(NAME, print_period=0, desired_param="[-5.0, 0.5, -1.2, -1.0]")
-    program.wait_for(
+    program.wait_for_line(
         "Not publishing [-5.000000, 0.500000, -1.200000, -1.000000]: joint 'j0' cannot go to "
         "-5: its limits are -2.57 to 2.57"
     )
-    assert program.interrupt() == 0
+    assert program.stop() == 0
     assert commands == []
 
 
 def test_warns_without_a_subscriber_and_publishes_when_the_controller_comes(robot, run, until):
     program = run(NAME, desired_param="[0.1, 0.2, 0.3, 0.4]")
-    program.wait_for("is the position_controller active?")
+    program.wait_for_line("is the position_controller active?")
     assert "nobody listens on /position_controller/commands" in program.output
-    program.wait_for("/joint_states has been silent for 5 s")
+    program.wait_for_line("/joint_states has been silent for 5 s")
     commands = robot.listen()
     until(lambda: commands, "the pose")
     assert commands == [[0.1, 0.2, 0.3, 0.4]]
@@ -251,7 +250,7 @@ def test_a_pose_can_be_taken_back_while_it_waits(robot, run, until, set_pose):
     commands = robot.listen()
     until(lambda: program.output.count("Joint State: 'j3'") >= 10, "a second of prints")
     assert commands == []
-    assert program.interrupt() == 0
+    assert program.stop() == 0
 
 
 def test_another_subscriber_does_not_take_the_controllers_pose(robot, run, until):
@@ -261,7 +260,7 @@ def test_another_subscriber_does_not_take_the_controllers_pose(robot, run, until
     commands = robot.listen("position_controller")
     until(lambda: commands and seen, "the pose at both")
     assert commands == seen == [[0.1, 0.2, 0.3, 0.4]]
-    assert program.interrupt() == 0
+    assert program.stop() == 0
 
 
 @pytest.mark.parametrize(

@@ -145,5 +145,5 @@ def test_ctrl_c_during_the_work_ends_it(robot, run):
     robot.broadcast()
     robot.stuck.add("j0")
     program = run(NAME)
-    program.wait_for("Pose 1 of 5: publishing positions")
-    assert program.interrupt() == 0
+    program.wait_for_line("Pose 1 of 5: publishing positions")
+    assert program.stop() == 0

@@ -29,14 +29,14 @@ def test_answers_each_typed_line(robot, run, until):
     commands = robot.listen()
     robot.describe()
     program = run(NAME)
-    program.wait_for(PROMPT)
+    program.wait_for_line(PROMPT)
     program.type("0.4 -0.1 0.5 0.4\n")
-    program.wait_for("Publishing: [0.400000, -0.100000, 0.500000, 0.400000]")
+    program.wait_for_line("Publishing: [0.400000, -0.100000, 0.500000, 0.400000]")
     until(lambda: commands, "the pose")
     program.type("1 2 3\n")
-    program.wait_for("Please enter exactly 4 numbers.")
+    program.wait_for_line("Please enter exactly 4 numbers.")
     program.type("-5 0.5 -1.2 -1\n")
-    program.wait_for("joint 'j0' cannot go to -5: its limits are -2.57 to 2.57")
+    program.wait_for_line("joint 'j0' cannot go to -5: its limits are -2.57 to 2.57")
     program.end_of_input()
     assert program.wait() == 0
     assert commands == [[0.4, -0.1, 0.5, 0.4]]
@@ -44,8 +44,7 @@ def test_answers_each_typed_line(robot, run, until):
 
 def test_bytes_that_are_not_text_are_answered(run):
     program = run(NAME)
-    assert program.process.stdin is not None
-    program.process.stdin.write(b"\xff 0 0 0\n")
+    program.process.stdin.buffer.write(b"\xff 0 0 0\n")
     program.end_of_input()
     assert program.wait() == 0
     assert "Please enter exactly 4 numbers." in program.output
@@ -53,16 +52,16 @@ def test_bytes_that_are_not_text_are_answered(run):
 
 def test_ctrl_c_at_the_prompt_ends_it(run):
     program = run(NAME)
-    program.wait_for(PROMPT)
-    assert program.interrupt() == 0
+    program.wait_for_line(PROMPT)
+    assert program.stop() == 0
     assert "Traceback" not in program.output
 
 
 def test_ctrl_c_while_a_line_waits_ends_it(run):
     program = run(NAME)
     program.type("0 0 0 0\n")
-    program.wait_for(PROMPT)
-    assert program.interrupt() == 0
+    program.wait_for_line(PROMPT)
+    assert program.stop() == 0
 
 
 def test_a_line_without_a_subscriber_fails_with_a_sentence(run):

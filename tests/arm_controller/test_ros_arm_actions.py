@@ -4,18 +4,17 @@ from types import SimpleNamespace
 
 import pytest
 import rclpy
-from control_msgs.action import GripperCommand
+from control_msgs.action import FollowJointTrajectory, GripperCommand
+from rclpy.action import ActionClient, ActionServer
 from rclpy.task import Future
+
+from arm_controller import ros_arm_actions
+from arm_controller.ros_arm_actions import ARM_ACTION, GRIPPER_ACTION, ArmActions
 
 pytestmark = pytest.mark.ros
 
 
 def test_that_the_servers_are_there_is_said_once_however_soon_they_are_found(robot, until, capfd):
-    from control_msgs.action import FollowJointTrajectory, GripperCommand
-    from rclpy.action import ActionClient, ActionServer
-
-    from arm_controller.ros_arm_actions import ARM_ACTION, GRIPPER_ACTION, ArmActions
-
     actions = ((FollowJointTrajectory, ARM_ACTION), (GripperCommand, GRIPPER_ACTION))
     servers = robot.node("servers")
     for kind, name in actions:
@@ -56,8 +55,6 @@ class ForgetfulClient:
 
 
 def test_a_goal_without_an_answer_is_sent_once_more(robot, monkeypatch):
-    from arm_controller import ros_arm_actions
-
     clients: list[ForgetfulClient] = []
 
     def client(*arguments: object) -> ForgetfulClient:
