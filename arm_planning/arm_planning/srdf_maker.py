@@ -1,8 +1,8 @@
 """Makes a whole SRDF for any URDF: default groups, and the pairs of links that need no check.
 
-Links that are joined touch at their joint, and those of a gripper where it is open or closed. Other
-pairs are decided by samples of the joints: those that touch in nearly all states, and those that
-never come near each other.
+Links that are joined touch at their joint, those of a gripper where it is open or closed, and the
+sections of a telescope where it is drawn in. Other pairs are decided by samples of the joints:
+those that touch in nearly all states, and those that never come near each other.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from arm_description.transforms import rotation_from_rpy
+from arm_description.urdf.joint_type import JointType
 from arm_description.urdf.robot import Box, Capsule, Collision, Cylinder, Robot, Sphere
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.contact import CollisionContact
@@ -43,6 +45,8 @@ HOME_SAMPLES = 2_000
 HOME_CLEARANCE_M = 0.005
 """How far apart links are at such a home, if possible: a servo does not hold an arm exactly."""
 HOME_DIGITS = 2
+PARALLEL = 1e-6
+"""How far the cosine of the angle between axes that count as parallel may be from 1."""
 FLOOR = "<floor>"
 """The plane below the root, on which a robot stands in the simulation."""
 
@@ -77,6 +81,7 @@ def make_srdf(
     sampler = _Sampler(robot, srdf, pieces)
     pairs |= dict.fromkeys(sampler.always(pairs), "Always")
     pairs |= dict.fromkeys(sampler.gripping(pairs), "Default")
+    pairs |= dict.fromkeys(sampler.telescoping(pairs), "Default")
     touching = sampler.ever(pairs, samples)
     solid = [link.name for link in robot.links if link.collisions]
     every = [(min(a, b), max(a, b)) for i, a in enumerate(solid) for b in solid[i + 1 :]]
@@ -104,6 +109,7 @@ def free_start(robot: Robot, meshes: MeshPieces | None = None) -> dict[str, floa
         return {}
     pairs |= dict.fromkeys(sampler.always(pairs), "Always")
     pairs |= dict.fromkeys(sampler.gripping(pairs), "Default")
+    pairs |= dict.fromkeys(sampler.telescoping(pairs), "Default")
     return sampler.free_home(pairs, _ignore)
 
 
@@ -144,6 +150,18 @@ class _Sampler:
                 q = np.array([state.get(joint, (0.0,))[0] for joint in model.joints])
                 found |= {pair for pair in _touching(collisions, q) if own.issuperset(pair)}
         return found
+
+    def telescoping(self, known: Mapping[Pair, str]) -> set[Pair]:
+        """Return the pairs of a telescope's sections that touch at home.
+
+        They slide along each other; the limits of their joints keep apart what must not meet.
+        """
+        pairs = set(_telescopes(self.robot))
+        if not pairs:
+            return set()
+        model = self._model(self.robot)
+        home = np.zeros(len(model.joints))
+        return _touching(self._collisions(model, known), home) & pairs
 
     def ever(self, known: Mapping[Pair, str], samples: int) -> set[Pair]:
         """Return the pairs that come near each other in a state.
@@ -282,6 +300,23 @@ def _joined(robot: Robot) -> Iterator[Pair]:
             above = carriers.get(above)
         if above is not None:
             yield min(link, above), max(link, above)
+
+
+def _telescopes(robot: Robot) -> Iterator[Pair]:
+    """Yield the pairs of links with one or more joints between them that slide along one line."""
+    carriers = {joint.child: joint for joint in robot.joints}
+    for link in robot.links:
+        above, rotation, line = carriers.get(link.name), np.eye(3), None
+        while above is not None and above.type in (JointType.FIXED, JointType.PRISMATIC):
+            if above.type is JointType.PRISMATIC:
+                axis = rotation.T @ above.axis
+                if line is not None and abs(axis @ line) < 1.0 - PARALLEL:
+                    break
+                line = axis
+            if line is not None:
+                yield min(link.name, above.parent), max(link.name, above.parent)
+            rotation = rotation_from_rpy(above.origin.rpy) @ rotation
+            above = carriers.get(above.parent)
 
 
 def _fixed(robot: Robot) -> set[str]:

@@ -150,6 +150,50 @@ def test_the_links_of_a_gripper_may_touch_where_it_is_closed():
     assert not told
 
 
+def telescope(second_axis: str) -> str:
+    """A lift of two sections that are drawn in at zero, the second turned back, with an arm."""
+    slides = {"kind": "prismatic", "limits": (0.0, 2.0)}
+    first = joint("lift", "base", "outer", axis="0 0 1", xyz="0 0 0.15", **slides)
+    second = joint("lift_more", "outer", "inner", axis=second_axis, **slides)
+    return robot(
+        *(ball("base", 0.1), ball("outer", 0.1), ball("inner", 0.1), ball("plate", 0.1)),
+        ball("arm", 0.02, x=0.5),
+        first,
+        second.replace("xyz='0 0 0'", "rpy='0 -1 0'"),
+        joint("mount", "inner", "plate", kind="fixed", xyz="0.05 0 0", limits=None),
+        joint("turn", "plate", "arm", axis="0 0 1", limits=(-1.0, 1.0)),
+    )
+
+
+ALONG = f"{np.sin(1.0)} 0 {np.cos(1.0)}"
+"""The axis of the first section in the frame of the second, which is turned back."""
+
+
+def test_the_sections_of_a_telescope_may_touch_where_it_is_drawn_in():
+    told: list[str] = []
+    srdf = make_srdf(parse_urdf(telescope(ALONG)), told.append)
+    inside = [("base", "inner"), ("base", "plate"), ("outer", "plate")]
+    assert [srdf.disabled[pair] for pair in inside] == ["Default"] * 3
+    assert not told
+    assert free_start(parse_urdf(telescope(ALONG))) == {}
+
+
+def test_slides_across_each_other_are_no_telescope():
+    srdf = make_srdf(parse_urdf(telescope("0 1 0")), lambda _sentence: None)
+    assert ("base", "inner") not in srdf.disabled
+    assert srdf.disabled["outer", "plate"] == "Default"
+
+
+def test_two_carriages_on_one_rail_are_checked():
+    rail = robot(
+        ball("rail", 0.05),
+        *(ball("left", 0.1), ball("right", 0.1)),
+        joint("left_slide", "rail", "left", kind="prismatic", axis="1 0 0", limits=(0, 1)),
+        joint("right_slide", "rail", "right", kind="prismatic", axis="1 0 0", limits=(0, 1)),
+    )
+    assert ("left", "right") not in make_srdf(parse_urdf(rail), lambda _: None).disabled
+
+
 def test_the_same_robot_gives_the_same_srdf():
     assert make_srdf(parse_urdf(SPINNER), lambda _: None) == made()[0]
 
