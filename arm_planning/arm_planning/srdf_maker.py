@@ -1,8 +1,9 @@
 """Makes a whole SRDF for any URDF: default groups, and the pairs of links that need no check.
 
-Links that are joined touch at their joint, those of a gripper where it is open or closed, and the
-sections of a telescope where it is drawn in. Other pairs are decided by samples of the joints:
-those that touch in nearly all states, and those that never come near each other.
+Links that are joined touch at their joint, those of a gripper where it is open or closed, the
+sections of a telescope where it is drawn in, and a wheel what stands beside it. Other pairs are
+decided by samples of the joints: those that touch in nearly all states, and those that never come
+near each other.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -81,7 +82,7 @@ def make_srdf(
     sampler = _Sampler(robot, srdf, pieces)
     pairs |= dict.fromkeys(sampler.always(pairs), "Always")
     pairs |= dict.fromkeys(sampler.gripping(pairs), "Default")
-    pairs |= dict.fromkeys(sampler.telescoping(pairs), "Default")
+    pairs |= dict.fromkeys(sampler.in_line(pairs), "Default")
     touching = sampler.ever(pairs, samples)
     solid = [link.name for link in robot.links if link.collisions]
     every = [(min(a, b), max(a, b)) for i, a in enumerate(solid) for b in solid[i + 1 :]]
@@ -109,7 +110,7 @@ def free_start(robot: Robot, meshes: MeshPieces | None = None) -> dict[str, floa
         return {}
     pairs |= dict.fromkeys(sampler.always(pairs), "Always")
     pairs |= dict.fromkeys(sampler.gripping(pairs), "Default")
-    pairs |= dict.fromkeys(sampler.telescoping(pairs), "Default")
+    pairs |= dict.fromkeys(sampler.in_line(pairs), "Default")
     return sampler.free_home(pairs, _ignore)
 
 
@@ -151,12 +152,13 @@ class _Sampler:
                 found |= {pair for pair in _touching(collisions, q) if own.issuperset(pair)}
         return found
 
-    def telescoping(self, known: Mapping[Pair, str]) -> set[Pair]:
-        """Return the pairs of a telescope's sections that touch at home.
+    def in_line(self, known: Mapping[Pair, str]) -> set[Pair]:
+        """Return the pairs at home that touch, of a telescope's sections or beside a wheel.
 
-        They slide along each other; the limits of their joints keep apart what must not meet.
+        What is between them is one line to slide along or to turn about endlessly: they touch by
+        their rough shapes only, or the limits of the joints keep apart what must not meet.
         """
-        pairs = set(_telescopes(self.robot))
+        pairs = {*_telescopes(self.robot), *_beside_wheels(self.robot)}
         if not pairs:
             return set()
         model = self._model(self.robot)
@@ -317,6 +319,19 @@ def _telescopes(robot: Robot) -> Iterator[Pair]:
                 yield min(link.name, above.parent), max(link.name, above.parent)
             rotation = rotation_from_rpy(above.origin.rpy) @ rotation
             above = carriers.get(above.parent)
+
+
+def _beside_wheels(robot: Robot) -> Iterator[Pair]:
+    """Yield the pairs of links that turn about each other endlessly: one joint is between them."""
+    bases = {link.name: link.name for link in robot.links}
+    for joint in robot.joints_in_tree_order:
+        if joint.type is JointType.FIXED:
+            bases[joint.child] = bases[joint.parent]
+    for joint in robot.joints:
+        if joint.type is JointType.CONTINUOUS:
+            turning = [link for link, base in bases.items() if base == bases[joint.child]]
+            beside = [link for link, base in bases.items() if base == bases[joint.parent]]
+            yield from ((min(a, b), max(a, b)) for a in turning for b in beside)
 
 
 def _fixed(robot: Robot) -> set[str]:

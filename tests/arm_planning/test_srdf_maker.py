@@ -184,6 +184,27 @@ def test_slides_across_each_other_are_no_telescope():
     assert srdf.disabled["outer", "plate"] == "Default"
 
 
+def beside_a_post(kind: str, limits: tuple[float, float] | None) -> str:
+    """A wheel, out of round, that touches a post at zero; both are on one frame."""
+    return robot(
+        *(ball("frame", 0.05), ball("post", 0.1), ball("wheel", 0.1, x=0.02)),
+        joint("mount", "frame", "post", kind="fixed", xyz="0 0.5 0.5", limits=None),
+        joint("drive", "frame", "wheel", kind=kind, xyz="-0.205 0.5 0.5", limits=limits),
+    )
+
+
+def test_a_wheel_may_touch_what_stands_beside_it():
+    srdf = make_srdf(parse_urdf(beside_a_post("continuous", None)), pytest.fail)
+    assert srdf.disabled["post", "wheel"] == "Default"
+
+
+def test_a_link_that_turns_between_limits_may_not_touch_what_stands_beside_it():
+    told: list[str] = []
+    srdf = make_srdf(parse_urdf(beside_a_post("revolute", (-3.0, 3.0))), told.append)
+    assert ("post", "wheel") not in srdf.disabled
+    assert told[0].startswith("at home post with wheel, ")
+
+
 def test_two_carriages_on_one_rail_are_checked():
     rail = robot(
         ball("rail", 0.05),
