@@ -98,15 +98,6 @@ def test_an_unknown_argument_is_a_warning(demo, capsys):
     assert first.endswith("did you mean 'world'?")
 
 
-def test_an_unknown_choice(refused, demo):
-    line = refused(str(demo), "world:=object", "model:=x")
-    assert "launch argument 'world' cannot be 'object'; did you mean 'objects'?" in line
-
-
-def test_a_missing_required_argument(refused, demo):
-    assert "launch argument 'model' has no default: give model:=VALUE" in refused(str(demo))
-
-
 def test_an_unknown_option(refused, demo):
     assert "no option --show-arg; did you mean '--show-args'" in refused(str(demo), "--show-arg")
     assert ":=" not in refused(str(demo), "-x")

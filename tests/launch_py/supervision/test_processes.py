@@ -201,18 +201,6 @@ def test_a_signal_sent_twice_at_once_counts_once(launch):
     assert "second Ctrl-C" not in launched.output
 
 
-def test_a_crash_loop_gives_up_and_says_so(launch):
-    launched = launch(
-        """
-        policy = RestartPolicy("on-failure", first_delay_s=0.01, give_up_after=3)
-        actions = [python("a", "raise SystemExit(9)", restart=policy, on_exit=Shutdown())]
-        """
-    )
-    assert launched.wait() == 9
-    assert len([line for line in launched.lines if "restart in" in line]) == 2
-    assert "giving up: it failed 3 times within 30 s" in launched.lines[-1]
-
-
 def test_a_required_process_gives_the_exit_code(launch):
     launched = launch(
         "actions = [forever('a'), python('b', 'raise SystemExit(5)', depends_on='a', "

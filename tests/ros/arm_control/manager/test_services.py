@@ -42,20 +42,6 @@ def test_controller_types_are_listed_with_their_base_class(control):
     )
 
 
-def test_a_controller_from_load_to_unload(control):
-    assert control.load("position_controller")
-    assert control.states() == {"position_controller": "unconfigured"}
-    assert control.configure("position_controller")
-    assert control.states() == {"position_controller": "inactive"}
-    answer = control.switch(["position_controller"])
-    assert (answer.ok, answer.message) == (True, "Successfully switched controllers!")
-    assert control.states() == {"position_controller": "active"}
-    assert not control.unload("position_controller")
-    assert control.switch([], ["position_controller"]).ok
-    assert control.unload("position_controller")
-    assert control.states() == {}
-
-
 def test_an_unloaded_controller_leaves_nothing_behind(control, manager):
     for _ in range(3):
         control.start("joint_state_broadcaster")
