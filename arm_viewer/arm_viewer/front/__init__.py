@@ -14,7 +14,6 @@ SCRIPTS = (
     "channel.js",
     "poses.js",
     "typed_numbers.js",
-    "quiet.js",
     "time_bar.js",
     "timeline.js",
     "dock.js",

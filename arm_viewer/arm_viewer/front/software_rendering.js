@@ -3,7 +3,8 @@
 There the processor emulates the card, and four things cost most: charts, whose canvases are drawn
 by that emulation too; shadows; antialiasing; and the number of pixels. While the scene moves, this
 script therefore draws as many pixels as the browser manages at a steady rate. A scene at rest is
-drawn once more, at the full resolution. With a graphics card the script does nothing. */
+drawn once more, at the full resolution. viser's warning, which covers the robot, is hidden. With a
+graphics card the script does nothing. */
 (() => {
   "use strict";
   const EMULATED = /swiftshader|llvmpipe|softpipe|software|basic render/i;
@@ -14,6 +15,7 @@ drawn once more, at the full resolution. With a graphics card the script does no
   // viser draws a scene at rest once a second.
   const HEARTBEAT_MS = 900;
   const SHORTEST_REST_MS = 400;
+  const WARNING = "Software WebGL";
 
   const original = HTMLCanvasElement.prototype.getContext;
 
@@ -26,6 +28,13 @@ drawn once more, at the full resolution. With a graphics card the script does no
     return EMULATED.test(String(name));
   }
 
+  new MutationObserver((changes, observer) => {
+    for (const shown of document.querySelectorAll(".mantine-Notification-root")) {
+      if (!shown.textContent.includes(WARNING)) continue;
+      shown.style.display = "none";
+      observer.disconnect();
+    }
+  }).observe(document, { childList: true, subtree: true });
   if (!isEmulated()) return;
 
   HTMLCanvasElement.prototype.getContext = function (kind, options) {

@@ -30,7 +30,6 @@ DOCUMENT = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" vers
 </library_geometries>
 <library_visual_scenes><visual_scene id="s">{nodes}</visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
-HOLE = "<ph><p>0 1 2</p></ph>"
 DRAWN = """<instance_geometry url="#g"><bind_material><technique_common>
 <instance_material symbol="m" target="#m"/></technique_common></bind_material>
 </instance_geometry>"""
