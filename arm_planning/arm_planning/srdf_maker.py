@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from arm_description.transforms import rotation_from_rpy
-from arm_description.urdf.joint_type import JointType
 from arm_description.urdf.robot import Box, Capsule, Collision, Cylinder, Robot, Sphere
 from arm_node.rigid_transform import RigidTransform
 from arm_planning.collision.contact import CollisionContact
 from arm_planning.collision.mesh_pieces import MeshPieces
 from arm_planning.collision.model import CollisionModel
+from arm_planning.joined_links import beside_wheels, joined, telescopes
+from arm_planning.repair_search import find_by_repair
 from arm_planning.robot.build import planning_model
 from arm_planning.robot.default_srdf import default_srdf
 from arm_planning.robot.model import PlanningModel
@@ -45,9 +45,9 @@ HOME_SAMPLES = 2_000
 """States to look at, farther and farther away, if the robot collides at home."""
 HOME_CLEARANCE_M = 0.005
 """How far apart links are at such a home, if possible: a servo does not hold an arm exactly."""
+HOME_MARGIN = 0.2
+"""How far around a state without contact one with clearance is looked for, of the way to others."""
 HOME_DIGITS = 2
-PARALLEL = 1e-6
-"""How far the cosine of the angle between axes that count as parallel may be from 1."""
 FLOOR = "<floor>"
 """The plane below the root, on which a robot stands in the simulation."""
 
@@ -78,7 +78,7 @@ def make_srdf(
         raise ValueError(f"{samples} samples are too few; there must be at least {MIN_SAMPLES}")
     pieces = meshes or MeshPieces()
     srdf = default_srdf(robot)
-    pairs = dict.fromkeys(_joined(robot), "Adjacent")
+    pairs = dict.fromkeys(joined(robot), "Adjacent")
     sampler = _Sampler(robot, srdf, pieces)
     pairs |= dict.fromkeys(sampler.always(pairs), "Always")
     pairs |= dict.fromkeys(sampler.gripping(pairs), "Default")
@@ -105,7 +105,7 @@ def free_start(robot: Robot, meshes: MeshPieces | None = None) -> dict[str, floa
         PlanningError: a mesh cannot be used.
     """
     sampler = _Sampler(robot, default_srdf(robot), meshes or MeshPieces())
-    pairs = dict.fromkeys(_joined(robot), "Adjacent")
+    pairs = dict.fromkeys(joined(robot), "Adjacent")
     if not sampler.contacts_at_home(pairs):
         return {}
     pairs |= dict.fromkeys(sampler.always(pairs), "Always")
@@ -158,7 +158,7 @@ class _Sampler:
         What is between them is one line to slide along or to turn about endlessly: they touch by
         their rough shapes only, or the limits of the joints keep apart what must not meet.
         """
-        pairs = {*_telescopes(self.robot), *_beside_wheels(self.robot)}
+        pairs = {*telescopes(self.robot), *beside_wheels(self.robot)}
         if not pairs:
             return set()
         model = self._model(self.robot)
@@ -212,9 +212,14 @@ class _Sampler:
         if not contacts:
             return {}
         model = self._model(self.robot)
-        free = self._free_near(self._home(model), model, known)
-        what = "set another state" if free is None else "home is moved to a state without contact"
+        home = self._home(model)
+        free = self._free_near(home, model, known)
+        still = _touching(
+            self._collisions(model, known, with_floor=True), home if free is None else free
+        )
         for contact in contacts:
+            is_moved = _pair(contact) not in still
+            what = "home is moved to a state without contact" if is_moved else "set another state"
             is_own = FLOOR not in (contact.first, contact.second)
             advice = "; if the two may touch, disable their collisions" if is_own else ""
             warn(f"at home {contact}: {what}{advice}")
@@ -239,14 +244,45 @@ class _Sampler:
         ):
             is_free = self._free_from(model, known, with_floor, clearance_m)
             if (free := next(filter(is_free, states), None)) is not None:
-                for index in range(len(home)):
-                    less = free.copy()
-                    less[index] = home[index]
-                    free = less if is_free(less) else free
-                rounded = np.where(free == home, home, np.round(free, HOME_DIGITS))
-                inside = np.clip(rounded, *self._limits(model))
-                return inside if is_free(inside) else free
+                return self._tidied(free, home, model, is_free)
+        return self._repaired(home, model, known)
+
+    def _repaired(
+        self, home: Array, model: PlanningModel, known: Mapping[Pair, str]
+    ) -> Array | None:
+        """Return a free state near home of a robot whose joints are too many for random states."""
+        carried = [_carried_by(self.robot, [joint]) for joint in model.joints]
+
+        def movers(contact: CollisionContact) -> list[int]:
+            each = [(contact.first in links) != (contact.second in links) for links in carried]
+            return np.flatnonzero(each).tolist()
+
+        for with_floor in (True, False):
+            collisions = self._collisions(model, known, with_floor=with_floor)
+            free = find_by_repair(home, self._limits(model), collisions.contacts, movers)
+            if free is None:
+                continue
+            around = np.array([*self._states(model, HOME_SAMPLES)]) - free
+            nearby = free + np.linspace(0.0, HOME_MARGIN, HOME_SAMPLES)[:, None] * around
+            has_clearance = self._free_from(model, known, with_floor, HOME_CLEARANCE_M)
+            if (roomy := next(filter(has_clearance, nearby), None)) is not None:
+                return self._tidied(roomy, home, model, has_clearance)
+            return self._tidied(
+                free, home, model, self._free_from(model, known, with_floor, clearance_m=0.0)
+            )
         return None
+
+    def _tidied(
+        self, free: Array, home: Array, model: PlanningModel, is_free: Callable[[Array], bool]
+    ) -> Array:
+        """Return a free state with as many joints as possible at home, the others round."""
+        for index in range(len(home)):
+            less = free.copy()
+            less[index] = home[index]
+            free = less if is_free(less) else free
+        rounded = np.where(free == home, home, np.round(free, HOME_DIGITS))
+        inside = np.clip(rounded, *self._limits(model))
+        return inside if is_free(inside) else free
 
     def _free_from(
         self, model: PlanningModel, known: Mapping[Pair, str], with_floor: bool, clearance_m: float
@@ -286,52 +322,11 @@ class _Sampler:
 
 
 def _touching(collisions: CollisionModel, q: Array) -> set[Pair]:
-    return {
-        (min(each.first, each.second), max(each.first, each.second))
-        for each in collisions.contacts(q)
-    }
+    return set(map(_pair, collisions.contacts(q)))
 
 
-def _joined(robot: Robot) -> Iterator[Pair]:
-    """Yield the pairs of links that a joint connects, or several with empty links between."""
-    carriers = {joint.child: joint.parent for joint in robot.joints}
-    solid = {link.name for link in robot.links if link.collisions}
-    for link in solid:
-        above = carriers.get(link)
-        while above is not None and above not in solid:
-            above = carriers.get(above)
-        if above is not None:
-            yield min(link, above), max(link, above)
-
-
-def _telescopes(robot: Robot) -> Iterator[Pair]:
-    """Yield the pairs of links with one or more joints between them that slide along one line."""
-    carriers = {joint.child: joint for joint in robot.joints}
-    for link in robot.links:
-        above, rotation, line = carriers.get(link.name), np.eye(3), None
-        while above is not None and above.type in (JointType.FIXED, JointType.PRISMATIC):
-            if above.type is JointType.PRISMATIC:
-                axis = rotation.T @ above.axis
-                if line is not None and abs(axis @ line) < 1.0 - PARALLEL:
-                    break
-                line = axis
-            if line is not None:
-                yield min(link.name, above.parent), max(link.name, above.parent)
-            rotation = rotation_from_rpy(above.origin.rpy) @ rotation
-            above = carriers.get(above.parent)
-
-
-def _beside_wheels(robot: Robot) -> Iterator[Pair]:
-    """Yield the pairs of links that turn about each other endlessly: one joint is between them."""
-    bases = {link.name: link.name for link in robot.links}
-    for joint in robot.joints_in_tree_order:
-        if joint.type is JointType.FIXED:
-            bases[joint.child] = bases[joint.parent]
-    for joint in robot.joints:
-        if joint.type is JointType.CONTINUOUS:
-            turning = [link for link, base in bases.items() if base == bases[joint.child]]
-            beside = [link for link, base in bases.items() if base == bases[joint.parent]]
-            yield from ((min(a, b), max(a, b)) for a in turning for b in beside)
+def _pair(contact: CollisionContact) -> Pair:
+    return min(contact.first, contact.second), max(contact.first, contact.second)
 
 
 def _fixed(robot: Robot) -> set[str]:
