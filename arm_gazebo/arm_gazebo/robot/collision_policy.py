@@ -126,6 +126,8 @@ PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 LEVEL = 1.0 - 1e-9
 SHALLOW_M = 1e-3
 """Overlaps up to this are rounding errors of a mesh, or of a foot on the floor."""
+LISTED = 4
+"""Links that a finding names; of more, the first ones."""
 EVERY_LAYER = 1
 """The collision mask of all of a robot's shapes while they are checked against each other."""
 
@@ -179,11 +181,16 @@ def report_overlaps(
 
 
 def _quoted_links(bodies: Iterable[int], names: Mapping[int, str]) -> str:
-    *others, last = [f"'{names[body]}'" for body in bodies]
+    quoted = [f"'{names[body]}'" for body in bodies]
+    if len(quoted) > LISTED:
+        quoted = [*quoted[: LISTED - 1], f"{len(quoted) - LISTED + 1} more"]
+    *others, last = quoted
     return f"links {', '.join(others)} and {last}" if others else f"link {last}"
 
 
 def _each(depths: Mapping[int, float]) -> str:
+    if len(depths) > LISTED:
+        return f"up to {_millimetres(max(depths.values()))}"
     return ", ".join(map(_millimetres, depths.values()))
 
 

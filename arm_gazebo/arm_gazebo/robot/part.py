@@ -164,7 +164,9 @@ class RobotPart:
             self.bodies(model),
             self._entry.self_collides,
             self._report,
-            advice="; base:=free lets the robot stand on the floor" if can_be_free else "",
+            advice="; base:=free lets the robot stand on the floor, and pose:= raises it"
+            if can_be_free
+            else "",
         )
 
     def exclude_neighbour_contacts(self, model: mujoco.MjModel, qpos: NDArray[np.float64]) -> None:

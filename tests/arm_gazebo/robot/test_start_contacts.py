@@ -40,8 +40,19 @@ def test_a_moving_link_below_the_floor_is_a_warning_with_its_depth(arm):
     assert finding.outcome.value == "warning"
     assert str(finding) == (
         "link 'hand': below the floor by 30 mm, and pushed out with force; base:=free lets the "
-        "robot stand on the floor"
+        "robot stand on the floor, and pose:= raises it"
     )
+
+
+def test_of_many_links_below_the_floor_the_first_are_named(arm, parts):
+    legs = [f"leg{n}" for n in range(4)]
+    more = "".join(
+        box(parts, leg) + parts.joint(f"hip_{leg}", "base", leg, xyz=f"0 {n + 1} {-0.1 * n}")
+        for n, leg in enumerate(legs)
+    )
+    finding = next(each for each in arm(0.07, more=more) if "below the floor" in str(each))
+    said = "links 'hand', 'leg0', 'leg1' and 2 more: below the floor by up to 400 mm, and pushed"
+    assert str(finding).startswith(said)
 
 
 def test_a_bolted_link_below_the_floor_is_a_note(arm):
