@@ -75,23 +75,11 @@ def test_formats(parts, tmp_path, box, suffix):
     assert extent(model) == pytest.approx(SIZE, abs=1e-6)
 
 
-def test_text_stl(parts, tmp_path, box):
-    file = tmp_path / "box.stl"
-    box.export(file, file_type="stl_ascii")
-    assert extent(parts.build(robot_with(shape(file))).model) == pytest.approx(SIZE, abs=1e-6)
-
-
 def test_binary_stl_that_starts_like_text(parts, tmp_path, box):
     data = bytearray(box.export(file_type="stl"))
     data[:6] = b"solid "
     (tmp_path / "box.stl").write_bytes(data)
     model = parts.build(robot_with(shape(tmp_path / "box.stl"))).model
-    assert extent(model) == pytest.approx(SIZE, abs=1e-6)
-
-
-def test_unit_of_a_collada_file_counts(parts, tmp_path):
-    (tmp_path / "part.dae").write_text(COLLADA)
-    model = parts.build(robot_with(shape(tmp_path / "part.dae"))).model
     assert extent(model) == pytest.approx(SIZE, abs=1e-6)
 
 
