@@ -4,12 +4,13 @@ The module of a verb is imported only when the verb is used. So `arm --help` and
 fast.
 """
 
+import os
 import signal
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, cast
 
-from arm_cli.errors import ArmCliError
+from arm_cli.errors import ArmCliError, UnansweredError
 from arm_cli.output import complain, say_document
 from arm_node.frozen import frozen
 from arm_node.messages import MessageValueError
@@ -153,5 +154,15 @@ def run_reporting_errors(program: str, action: Callable[[], int | None]) -> int:
                 raise KeyboardInterrupt from error
             if not isinstance(error, ArmCliError | MessageValueError):
                 raise
-            complain(f"{program}: {error}")
+            complain(f"{program}: {error}{_who_is_stopped(error)}")
             return error.exit_code if isinstance(error, ArmCliError) else ArmCliError.exit_code
+
+
+def _who_is_stopped(error: Exception) -> str:
+    """Return which programs of the domain cannot answer because they are stopped."""
+    if not isinstance(error, UnansweredError):
+        return ""
+    from arm_cli.domain_programs import describe_stopped, find_listeners
+
+    sentence = describe_stopped(find_listeners(os.environ))
+    return f"; {sentence}" if sentence else ""

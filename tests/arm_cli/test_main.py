@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from run_python import run_python
 
+from arm_cli.domain_programs import ports_of
+from arm_cli.errors import UnansweredError
 from arm_cli.main import main
 from arm_cli.verb import run_reporting_errors
 from arm_cli.verbs import ARM
@@ -156,3 +158,29 @@ def test_a_current_folder_that_was_removed_is_one_sentence(tmp_path, words):
     done = run_arm(f"cd {folder} && rmdir {folder} && arm {words}")
     assert done.returncode == 1
     assert done.stderr == "arm: the current folder no longer exists; change to another one\n"
+
+
+HOLDS_A_PORT = """
+import os, signal, socket
+port = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+port.bind(("127.0.0.1", PORT))
+os.kill(os.getpid(), signal.SIGSTOP)
+"""
+
+
+def test_a_program_that_is_stopped_is_named_where_nobody_answers(capsys):
+    # The last port of the domain: participants take them from the first on.
+    source = HOLDS_A_PORT.replace("PORT", str(ports_of(os.environ)[-1]))
+
+    def ask() -> None:
+        raise UnansweredError("nobody answers")
+
+    with subprocess.Popen([sys.executable, "-c", source]) as stopped:
+        try:
+            os.waitid(os.P_PID, stopped.pid, os.WSTOPPED)
+            assert run_reporting_errors("arm move", ask) == 1
+        finally:
+            stopped.kill()
+    assert capsys.readouterr().err.endswith(
+        f"({stopped.pid}) is stopped and answers nobody until `kill -CONT {stopped.pid}`\n"
+    )

@@ -13,7 +13,8 @@ import pytest
 from programs import Program
 
 from arm_cli.doctor.diagnosis import Severity
-from arm_cli.doctor.network import check_listening, find_listeners
+from arm_cli.doctor.network import check_listening
+from arm_cli.domain_programs import find_listeners
 from launch_py.system.dds_profile import shipped_profile
 
 HERE, THERE = "10.77.0.1", "10.77.0.2"

@@ -2,23 +2,28 @@
 
 import contextlib
 import errno
-import os
-import re
 import socket
-import struct
-from collections.abc import Iterator, Mapping
-from contextlib import suppress
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 
 from arm_cli.doctor.diagnosis import Diagnosis
+from arm_cli.domain_programs import (
+    DOMAIN,
+    PROC,
+    RANGE,
+    STATIC_PEERS,
+    DomainProgram,
+    describe_stopped,
+    domain_port,
+    find_listeners,
+    ports_of,
+)
 from arm_node.ros_domain import UDP_SOCKETS, describe_users, other_users
 from launch_py.fast_dds.participants import FIRST_PORT, LAST_DOMAIN, PORTS_OF_DOMAIN, domain_of
 
 LAST_SAFE_DOMAIN = 101
 RANGES = ("SUBNET", "LOCALHOST", "OFF", "SYSTEM_DEFAULT")
 MIDDLEWARE = "rmw_fastrtps_cpp"
-DOMAIN, RANGE = "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE"
 LOOPBACK, MULTICAST_GROUP = "127.0.0.1", "239.255.0.1"
 RECEIVE_TIMEOUT_S = 1.0
 
@@ -124,15 +129,6 @@ def _describe_taken(environ: Mapping[str, str], port: int, reach: str) -> Diagno
     return Diagnosis.warning("ports", sentence, fix)
 
 
-def domain_port(environ: Mapping[str, str]) -> int | None:
-    """Return the first UDP port of the domain, by the RTPS specification 9.6.2.1.
-
-    Return None if ROS_DOMAIN_ID is not valid.
-    """
-    domain = domain_of(environ.get(DOMAIN))
-    return None if domain is None else FIRST_PORT + PORTS_OF_DOMAIN * domain
-
-
 def _may_be_shared(port: int) -> bool:
     """Return whether the port is free, or held by programs that share it, as Fast DDS does."""
     with _socket() as probe:
@@ -170,36 +166,6 @@ def _socket() -> "contextlib.closing[socket.socket]":
     return contextlib.closing(shared)
 
 
-PROC = Path("/proc")
-TCP_LISTEN = "0A"
-"""The state of a listening socket in /proc/net/tcp; see the kernel's tcp_states.h."""
-STATIC_PEERS = "ROS_STATIC_PEERS"
-_NAMED = re.compile(r"sys\.argv\[0\] = '([^']+)'")
-
-
-@dataclass(frozen=True, slots=True)
-class _Listener:
-    """A process that has sockets of the domain open.
-
-    The addresses are those for the domain and for web pages; `environ` is what it was started with.
-    """
-
-    pid: int
-    program: str
-    addresses: frozenset[str]
-    environ: Mapping[str, str]
-
-    @property
-    def on_loopback_only(self) -> bool:
-        """Whether only programs on this machine can reach it."""
-        return all(address.startswith("127.") for address in self.addresses)
-
-    @property
-    def is_meant_for_localhost(self) -> bool:
-        """Whether its environment limits discovery to this machine."""
-        return self.environ.get(RANGE) == "LOCALHOST" and not self.environ.get(STATIC_PEERS)
-
-
 def check_listening(environ: Mapping[str, str], proc: Path = PROC) -> Diagnosis:
     """List this user's ROS programs that listen on loopback only, and those that do not."""
     listeners = find_listeners(environ, proc)
@@ -218,9 +184,17 @@ def check_listening(environ: Mapping[str, str], proc: Path = PROC) -> Diagnosis:
     return Diagnosis.ok("listening", sentence)
 
 
+def check_stopped(environ: Mapping[str, str], proc: Path = PROC) -> Diagnosis:
+    """Name this user's ROS programs that Ctrl-Z, SIGSTOP or a debugger has stopped."""
+    sentence = describe_stopped(find_listeners(environ, proc))
+    if sentence:
+        return Diagnosis.warning("stopped", sentence, "let it go on, or end it")
+    return Diagnosis.ok("stopped", "no ROS program of yours is stopped")
+
+
 def check_users(environ: Mapping[str, str], table: Path = UDP_SOCKETS) -> Diagnosis:
     """Name the other users whose programs are in the same domain, whom no message reaches."""
-    domain = (_ports(environ).start - FIRST_PORT) // PORTS_OF_DOMAIN
+    domain = (ports_of(environ).start - FIRST_PORT) // PORTS_OF_DOMAIN
     users = other_users(domain, table)
     if not users:
         return Diagnosis.ok("users", "no other user of this machine is in this domain")
@@ -231,88 +205,15 @@ def check_users(environ: Mapping[str, str], table: Path = UDP_SOCKETS) -> Diagno
     )
 
 
-def find_listeners(environ: Mapping[str, str], proc: Path = PROC) -> list[_Listener]:
-    """Return the programs that have a UDP port of the domain open, ordered by process id."""
-    ports = _ports(environ)
-    here = _namespace(proc / "self")
-    found: list[_Listener] = []
-    for folder in sorted(proc.glob("[0-9]*"), key=lambda folder: int(folder.name)):
-        if int(folder.name) == os.getpid():
-            continue
-        with suppress(OSError):  # It has ended, or belongs to another user.
-            if _namespace(folder) == here:
-                found += _listener(folder, ports)
-    return found
-
-
-def _listener(folder: Path, ports: range) -> Iterator[_Listener]:
-    inodes = set(_socket_inodes(folder))
-    udp = {address for address, port, _ in _sockets(folder / "net/udp", inodes) if port in ports}
-    if udp:
-        tcp = {
-            f"{address}:{port}"
-            for address, port, state in _sockets(folder / "net/tcp", inodes)
-            if state == TCP_LISTEN
-        }
-        environ = _pairs((folder / "environ").read_bytes())
-        yield _Listener(int(folder.name), _program(folder), frozenset(udp | tcp), environ)
-
-
-def _ports(environ: Mapping[str, str]) -> range:
-    """Return the ports of the domain, or those of domain 0 if the variable is not valid."""
-    first = domain_port(environ) or FIRST_PORT
-    return range(first, first + PORTS_OF_DOMAIN)
-
-
-def _inside(listeners: list[_Listener]) -> str:
+def _inside(listeners: list[DomainProgram]) -> str:
     local = [one for one in listeners if one.on_loopback_only]
     return f"on 127.0.0.1 only: {_names(local)}" if local else ""
 
 
-def _outside(listeners: list[_Listener]) -> str:
+def _outside(listeners: list[DomainProgram]) -> str:
     places = sorted({a for one in listeners for a in one.addresses if not a.startswith("127.")})
     return f"on {', '.join(places)}: {_names(listeners)}" if listeners else ""
 
 
-def _names(listeners: list[_Listener]) -> str:
+def _names(listeners: list[DomainProgram]) -> str:
     return ", ".join(f"{one.program} ({one.pid})" for one in listeners)
-
-
-def _namespace(folder: Path) -> str:
-    return os.readlink(folder / "ns/net")
-
-
-def _socket_inodes(folder: Path) -> Iterator[str]:
-    for descriptor in os.listdir(folder / "fd"):
-        with suppress(OSError):
-            target = os.readlink(folder / "fd" / descriptor)
-            if target.startswith("socket:["):
-                yield target[len("socket:[") : -1]
-
-
-def _sockets(table: Path, inodes: set[str]) -> Iterator[tuple[str, int, str]]:
-    """Yield address, port and state of a process's own rows of /proc/PID/net/udp or tcp."""
-    for row in table.read_text().splitlines()[1:]:
-        fields = row.split()
-        if fields[9] in inodes:
-            address, _, port = fields[1].partition(":")
-            packed = struct.pack("=I", int(address, 16))
-            yield socket.inet_ntoa(packed), int(port, 16), fields[3]
-
-
-def _pairs(block: bytes) -> dict[str, str]:
-    words = (os.fsdecode(word).partition("=") for word in block.split(b"\0"))
-    return {name: value for name, _, value in words}
-
-
-def _program(folder: Path) -> str:
-    """Return the name of a program; for an interpreter, that of its script or module."""
-    words = [os.fsdecode(w) for w in (folder / "cmdline").read_bytes().split(b"\0") if w]
-    program = os.path.basename(words[0]) if words else "a program"
-    if not program.startswith("python"):
-        return program
-    if "-c" in words[:-1]:
-        # The launcher runs entry points this way, and sets sys.argv[0] to the program's name.
-        named = _NAMED.search(words[words.index("-c") + 1])
-        return named[1] if named else f"{program} -c"
-    return next((os.path.basename(w) for w in words[1:] if not w.startswith("-")), program)

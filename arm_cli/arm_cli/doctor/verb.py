@@ -22,7 +22,13 @@ from arm_cli.doctor.installation import (
     check_shared_memory,
     check_wheels,
 )
-from arm_cli.doctor.network import check_discovery, check_listening, check_ports, check_users
+from arm_cli.doctor.network import (
+    check_discovery,
+    check_listening,
+    check_ports,
+    check_stopped,
+    check_users,
+)
 from arm_cli.doctor.observation import GraphObservation
 from arm_cli.doctor.running import (
     check_claims,
@@ -97,6 +103,7 @@ def installation_checks(environ: Mapping[str, str]) -> tuple[Callable[[], Diagno
         partial(check_discovery, environ),
         partial(check_ports, environ),
         partial(check_listening, environ),
+        partial(check_stopped, environ),
         partial(check_users, environ),
         check_page_port,
     )

@@ -45,7 +45,8 @@ class MoveGroupClient:
             self._session.node.create_subscription(String, name, take, LATCHED)
         if not self._session.wait_until(lambda: len(texts) == 2, timeout_s=TIMEOUT_S):
             missing = [self._name(topic) for topic in (SRDF, URDF) if topic not in texts]
-            raise UnansweredError(f"nobody publishes {' and '.join(missing)}: {self._advice()}")
+            advice = "does robot_state_publisher run?" if SRDF in texts else self._advice()
+            raise UnansweredError(f"nobody publishes {' and '.join(missing)}: {advice}")
         robot = parse_urdf(texts[URDF])
         # The limits do not matter here, so neither do remarks about them.
         return planning_model(robot, parse_srdf(texts[SRDF], robot), warn=lambda _: None)
@@ -80,6 +81,8 @@ class MoveGroupClient:
         topic = self._name("joint_states")
         self._session.node.create_subscription(JointState, topic, take, qos)
         if not self._session.wait_until(lambda: known.keys() >= set(joints), timeout_s=TIMEOUT_S):
+            if not known:
+                raise UnansweredError(f"no message arrived on {topic}")
             missing = ", ".join(joint for joint in joints if joint not in known)
             raise UnansweredError(f"{topic} has no position of {missing}")
         return {joint: known[joint] for joint in joints}

@@ -12,7 +12,13 @@ import pytest
 
 from arm_cli.doctor.diagnosis import Severity
 from arm_cli.doctor.installation import OWNER_HEADER, check_page_port
-from arm_cli.doctor.network import check_discovery, check_listening, check_ports, check_users
+from arm_cli.doctor.network import (
+    check_discovery,
+    check_listening,
+    check_ports,
+    check_stopped,
+    check_users,
+)
 from arm_viewer.access import Access
 from arm_viewer.page_server import page_server
 from launch_py.fast_dds.participants import LAST_DOMAIN
@@ -193,7 +199,9 @@ def processes(tmp_path):
         (folder / "ns/net").symlink_to("net:[1]")
         return folder
 
-    def add(pid: int, command: str, address: str, port: int, **environ: str) -> Path:
+    def add(
+        pid: int, command: str, address: str, port: int, state: str = "S", **environ: str
+    ) -> Path:
         folder = namespace(tmp_path / str(pid))
         table.append(_udp_row(address, port, pid))
         (folder / "fd").mkdir()
@@ -201,6 +209,7 @@ def processes(tmp_path):
         (folder / "net").mkdir()
         (folder / "net/tcp").write_text("header\n")
         (folder / "cmdline").write_text(command.replace(" ", "\0") + "\0")
+        (folder / "stat").write_text(f"{pid} (a) b) {state} 1 {pid}")
         (folder / "environ").write_text("".join(f"{k}={v}\0" for k, v in environ.items()))
         for process in tmp_path.glob("[0-9]*"):
             (process / "net/udp").write_text("\n".join(["header", *table, ""]))
@@ -219,6 +228,16 @@ def test_listening_addresses_are_listed(processes):
     assert finding.sentence == ("on 127.0.0.1 only: arm_gazebo_node (11); on 0.0.0.0: talker (12)")
     (other,) = check_listening({"ROS_DOMAIN_ID": "3"}, proc).sentence.splitlines()
     assert other == "no ROS program of yours listens in this domain"
+
+
+def test_programs_that_are_stopped_are_a_warning(processes):
+    processes(11, "python3 -m mine", "127.0.0.1", 7410, state="T")
+    assert check_stopped({"ROS_DOMAIN_ID": "3"}, processes(12, "nc", "127.0.0.1", 7412)).fix == ""
+    finding = check_stopped({}, processes(13, "/opt/ros/talker", "127.0.0.1", 7414, state="t"))
+    assert finding.severity is Severity.WARNING
+    assert finding.sentence == (
+        "mine (11), talker (13) are stopped and answer nobody until `kill -CONT 11 13`"
+    )
 
 
 def test_a_program_with_localhost_that_listens_everywhere_is_a_warning(processes):
