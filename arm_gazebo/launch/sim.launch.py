@@ -64,7 +64,7 @@ SEVERAL: dict[str, tuple[Any, ...]] = {
     "robots": (
         "",
         "YAML file of several robots in one world, instead of a model: NAMESPACE: "
-        "{model: FILE, and model_args, controllers, spawn, package_path, base, pose}",
+        "{model: FILE, and model_args, controllers, spawn, package_path, base, pose, prefix}",
     ),
     "copies": (
         "1",

@@ -46,6 +46,7 @@ class RobotRequest:
         package_path: folders, separated by colons.
         base: "fixed" or "free".
         pose: x y z roll pitch yaw of the root in the world, in m and rad; () for the default.
+        prefix: whether NAMESPACE_ is put before all names of its links and joints.
     """
 
     model: str
@@ -55,6 +56,7 @@ class RobotRequest:
     package_path: str = ""
     base: str = "fixed"
     pose: tuple[float, ...] = ()
+    prefix: bool = False
 
 
 def read_robots_file(path: Path | str) -> dict[str, RobotRequest]:
@@ -85,11 +87,17 @@ def _request(file: Path, name: str, entry: object) -> RobotRequest:
     # A key without a value counts as missing.
     filled = {key: value for key, value in entry.items() if value is not None}
     pose = _pose(where, filled.pop("pose", []))
+    prefix = filled.pop("prefix", False)
+    if not isinstance(prefix, bool):
+        raise SimSettingsError(
+            f"{where}: prefix takes true or false, not {prefix!r}; true puts {name}_ before the "
+            "names of links and joints"
+        )
     texts = {key: _text(where, key, value) for key, value in filled.items()}
     for key in ("model", "controllers"):
         if texts.get(key) and "://" not in texts[key]:
             texts[key] = str(file.parent / Path(texts[key]).expanduser())
-    return RobotRequest(**texts, pose=pose)
+    return RobotRequest(**texts, pose=pose, prefix=prefix)
 
 
 def _text(where: str, key: str, value: Any) -> str:
@@ -174,15 +182,24 @@ def robots_of_file(path: str) -> dict[str, PlacedRobot]:
         DescriptionError: a model does not exist, or is not a robot.
     """
     return {
-        name: PlacedRobot(
-            set_up_robot(
-                robot.model, robot.model_args, robot.controllers, robot.spawn, robot.package_path
-            ),
-            robot.base,
-            robot.pose,
-        )
+        name: PlacedRobot(_set_up(name, robot), robot.base, robot.pose)
         for name, robot in read_robots_file(path).items()
     }
+
+
+def _set_up(name: str, robot: RobotRequest) -> RobotSetup:
+    setup = set_up_robot(
+        robot.model, robot.model_args, robot.controllers, robot.spawn, robot.package_path
+    )
+    return (
+        _with_prefix(setup, name, _content_of(setup.controllers, name)) if robot.prefix else setup
+    )
+
+
+def _with_prefix(setup: RobotSetup, name: str, content: Mapping[str, Any]) -> RobotSetup:
+    """Return a robot with NAME_ before the names of links and joints, in its controllers, too."""
+    copy = copy_description(setup.description, name)
+    return replace(setup, description=copy.text, controllers=_controllers_of(copy, content))
 
 
 def read_copies(copies: str, limit: int) -> int:
@@ -243,14 +260,10 @@ def copies_of(
     content = _content_of(setup.controllers, own)
     robots: dict[str, PlacedRobot] = {}
     for index, pose in enumerate(grid.poses()):
-        copy = copy_description(setup.description, f"{name}_{index}")
-        copied = replace(
-            setup,
-            description=copy.text,
-            controllers=_controllers_of(copy, content),
-            remarks=setup.remarks if index == 0 else (),
-        )
-        robots[copy.name] = PlacedRobot(copied, base, pose, on_floor=not grid.pose)
+        copied = _with_prefix(setup, f"{name}_{index}", content)
+        if index > 0:
+            copied = replace(copied, remarks=())
+        robots[f"{name}_{index}"] = PlacedRobot(copied, base, pose, on_floor=not grid.pose)
     return robots
 
 

@@ -208,7 +208,7 @@ def _check_names(spec: mujoco.MjSpec, robot: Robot) -> None:
                     f"the world, or a robot in it, already has a "
                     f"{'body' if kind == 'link' else kind} '{name}', so the {kind} of that name "
                     f"in robot '{robot.name}' cannot be added; rename one of them, with a prefix "
-                    "if the description takes one"
+                    "if the description takes one, or with prefix: true in a file of robots"
                 )
 
 

@@ -55,6 +55,10 @@ def test_what_has_no_value_is_as_if_it_were_not_there(file):
         ("left: 1", "'left' has no model"),
         ("left: {}", "'left' has no model"),
         ("a/b: {model: x}", "'a/b': this is not a namespace"),
+        (
+            "left: {model: x, prefix: left_}",
+            "prefix takes true or false, not 'left_'; true puts left_",
+        ),
         ("left: {model: x, modelargs: y}", "has the key 'modelargs'; it takes model, model_args"),
         ("left: {model: x, pose: here}", "pose takes x y z roll pitch yaw, not 'here'"),
         ("left: {model: x, pose: [0, 1, 0]}", r"yaw, not \[0, 1, 0\]"),

@@ -6,7 +6,13 @@ from robots import joint, link, robot
 from arm_description.urdf.parser import parse_urdf
 from arm_gazebo.errors import SimSettingsError
 from arm_gazebo.launching.robot_setup import set_up_robot
-from arm_gazebo.launching.several_robots import Grid, copies_of, read_copies, read_grid
+from arm_gazebo.launching.several_robots import (
+    Grid,
+    copies_of,
+    read_copies,
+    read_grid,
+    robots_of_file,
+)
 
 CONTROLLERS = """
 /lab/controller_manager:
@@ -58,6 +64,19 @@ def test_parameters_of_controllers_name_the_joints_of_the_copy(setup):
     assert arm["constraints"] == {"lab_1_shoulder": {"goal": 0.1}}
     assert arm["table"] == "/shoulder/table.csv"
     assert "arm" in parameters_of(robot, "controller_manager")
+
+
+def test_a_robot_of_a_file_gets_a_prefix_if_the_file_says_so(tmp_path):
+    (tmp_path / "arm.urdf").write_text(ROBOT)
+    (tmp_path / "controllers.yaml").write_text(CONTROLLERS)
+    (tmp_path / "robots.yaml").write_text(
+        "lab: {model: arm.urdf, controllers: controllers.yaml, prefix: true}\n"
+        "bare: {model: arm.urdf, prefix: false}\n"
+    )
+    robots = robots_of_file(str(tmp_path / "robots.yaml"))
+    joints = [parse_urdf(robots[name].setup.description).joints for name in ("lab", "bare")]
+    assert [joint.name for (joint,) in joints] == ["lab_shoulder", "shoulder"]
+    assert parameters_of(robots["lab"], "arm")["joints"] == ["lab_shoulder"]
 
 
 def test_wheels_of_a_copy_have_an_odometry_frame_of_their_own(setup):
