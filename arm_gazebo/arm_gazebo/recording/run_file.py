@@ -133,6 +133,14 @@ class RunFileWriter:
             raise RecordingError(f"{path} exists already; choose another name") from error
         except OSError as error:
             raise RecordingError(f"cannot write {path}: {error.strerror}") from error
+        try:
+            self._begin(header)
+        except OSError as error:
+            self.close()
+            path.unlink(missing_ok=True)
+            raise RecordingError(f"cannot write {path}: {error.strerror}") from error
+
+    def _begin(self, header: Mapping[str, Any]) -> None:
         self._writer = Writer(self._stream, use_chunking=False, enable_data_crcs=False)
         self._writer.start(PROFILE, LIBRARY)
         schema = self._writer.register_schema("", "", b"")
@@ -141,6 +149,7 @@ class RunFileWriter:
             for topic in (HEADER, INPUT, STATES, END)
         }
         self._message(HEADER, 0, _bytes_of({"format": FORMATS[-1], **header}))
+        self.flush()
 
     def write(self, record: Record) -> None:
         """Append a record.

@@ -1,3 +1,5 @@
+import resource
+
 import numpy as np
 import pytest
 
@@ -124,3 +126,16 @@ def test_no_file_is_overwritten(tmp_path):
 def test_a_folder_that_is_not_there_is_a_sentence(tmp_path):
     with pytest.raises(RecordingError, match="No such file or directory"):
         RunFileWriter(tmp_path / "none" / "a.run", {})
+
+
+@pytest.mark.parametrize("size", [100, 1_000_000])
+def test_a_file_that_does_not_fit_on_the_disk_is_refused_and_removed(tmp_path, size):
+    """A limit on the size of files stands for a full disk."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (50, before[1]))
+    try:
+        with pytest.raises(RecordingError, match=r"^cannot write .*run\.arm: File too large$"):
+            RunFileWriter(tmp_path / "run.arm", {"model": "x" * size})
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert list(tmp_path.iterdir()) == []
