@@ -111,6 +111,8 @@ def test_security_that_ros_does_not_enforce_is_left_as_it_is(changed):
 def test_the_security_of_a_sourced_ros_is_left_as_it_is(monkeypatch, tmp_path):
     (tmp_path / "rclpy.py").write_text("")
     monkeypatch.syspath_prepend(tmp_path)
+    # Another test of this process may have imported it.
+    monkeypatch.delitem(sys.modules, "rclpy", raising=False)
     environment = {"HOME": "/home/me"} | ENFORCED
     prepare_environment(environment)
     assert environment.items() >= ENFORCED.items()
