@@ -134,7 +134,7 @@ def given_parameters(node: Node) -> dict[str, Any]:
 def check_changes(
     node: Node, check: Callable[[list[Parameter]], object], *refusals: type[Exception]
 ) -> None:
-    """Call a function with the parameters that clients set; its errors refuse them, as a reason."""
+    """Have a function check what clients set; its errors refuse it, and are the reason."""
 
     def answer(changed: list[Parameter]) -> SetParametersResult:
         try:

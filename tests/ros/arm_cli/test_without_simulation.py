@@ -2,6 +2,7 @@
 
 import re
 import shlex
+from functools import partial
 from typing import Any
 
 import pytest
@@ -93,7 +94,7 @@ def test_tab_knows_parameters_and_their_values(client, offered):
         ("arm param get /test_client fl", ["flag"]),
         ("arm service call /test_client/set", ["/test_client/set_parameters"]),
     ):
-        client.wait_until(lambda line=line, words=words: offers(line, *words), f"{line}: {words}")
+        assert client.wait_until(partial(offers, line, *words), f"{line}: {words}")
 
 
 def test_what_is_not_set_is_said_with_how_to_set_it(client, run_until):
@@ -120,6 +121,6 @@ def test_tab_gets_names_from_a_running_robot_without_a_node(start, offered, clie
         ("arm service call /", {"/robot_state_publisher/set_parameters"}),
     ):
         # Tab does not wait long for the names.
-        client.wait_until(
+        assert client.wait_until(
             lambda line=line, words=words: words <= set(offered(line, NO_ROS)), f"{line}: {words}"
         )

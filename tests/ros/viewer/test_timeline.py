@@ -153,6 +153,7 @@ def test_the_robot_is_where_the_timeline_is_dragged_to(timeline, size):
             timeline.drag(share)
             timeline.until_near(timeline.moment_s, share * LENGTH_S, 0.5)
             timeline.until_near(timeline.joint, share, 0.03)
+            assert timeline.joint() == pytest.approx(share, abs=0.03)
     finally:
         timeline.resize(DESK)
 
@@ -200,6 +201,7 @@ def test_space_plays_and_the_end_is_the_end(timeline):
     timeline.until_near(timeline.moment_s, LENGTH_S, 0.001)
     timeline.until_near(timeline.joint, 1.0, 0.002)
     timeline.page.locator("#arm-deck-play[aria-label=Play]").wait_for()
+    assert timeline.joint() == pytest.approx(1.0, abs=0.002)
 
 
 def test_a_mark_is_kept_beside_the_bag(timeline, folder):
@@ -219,6 +221,7 @@ def test_back_to_live_and_from_the_list_into_the_recording(timeline):
     timeline.click("Open bag")
     timeline.page.locator("#arm-timeline").wait_for(state="visible")
     timeline.until_near(timeline.moment_s, 0.0, 0.001)
+    assert timeline.moment_s() == pytest.approx(0.0, abs=0.001)
 
 
 @pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
